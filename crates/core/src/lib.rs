@@ -1,0 +1,56 @@
+/*!
+What every crate of puncta speaks: records, scenes, views, pictures, and the traits at the joints.
+
+A [`Scene`] holds [`Record`]s (any type with a position and a radius) relative to an `f64` origin.
+A spatial structure, such as the uniform grid of `puncta-grid`, cuts the records into [`Brick`]s.
+For a [`View`], [`Stage`]s narrow and order the bricks, and a [`Renderer`] draws them into a
+[`Picture`]: view depth and record id for each pixel. A [`Pipeline`] ties these together.
+
+```
+use glam::DVec3;
+use puncta_core::{Scene, Sphere, View};
+
+let scene = Scene::new(vec![Sphere::new([0.0, 0.0, 0.0], 1.0), Sphere::new([2.0, 0.0, 0.0], 0.5)]);
+let view = View::look_at(DVec3::new(0.0, 0.0, 10.0), DVec3::ZERO, DVec3::Y)?.fitted(&scene.bounds());
+assert!(view.eye().z > 2.0);
+# Ok::<(), puncta_core::Error>(())
+```
+
+# Coordinates
+
+World coordinates are `f64` and right-handed, in the units of the data. The stored position of a
+record is an `f32` offset from [`Scene::origin`], so a scene keeps its digits wherever it lies.
+Camera coordinates are *right, up, forward*: the third one is the **view depth**, which is positive
+in front of the camera. Pixel rows run from the top, and the ray of a pixel goes through its centre.
+
+# What a picture shows
+
+At each pixel: the nearest *front* surface along the ray, that is the nearest point where the ray
+enters a sphere, at a view depth of at least [`View::near`]. Equal depths go to the lower id. So a
+sphere that holds the camera is not drawn (the ray never enters it), and where the near plane cuts
+a sphere open, one looks through the cut at what lies behind.
+*/
+
+mod bounds;
+mod brick;
+mod error;
+mod image;
+mod picture;
+mod pipeline;
+mod record;
+mod scene;
+mod source;
+mod view;
+
+pub use crate::{
+    bounds::{Aabb, Bounds},
+    brick::{Brick, Visible, VisibleBrick},
+    error::Error,
+    image::Image,
+    picture::{NO_RECORD, Picture},
+    pipeline::{Batch, Frame, Pipeline, Progress, Progressive, Renderer, Stage, Step},
+    record::{Record, Sphere},
+    scene::{Attributes, MAX_RECORDS, Scalar, Scene},
+    source::{SliceSource, Source},
+    view::{MAX_SIDE, Projection, View},
+};

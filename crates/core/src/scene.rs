@@ -1,0 +1,221 @@
+//! Scenes: records, the origin they are relative to, and what else is known about them.
+
+use crate::{Bounds, Error, NO_RECORD, Record, Sphere};
+use glam::DVec3;
+
+/// The largest number of records in a scene: ids are `u32`, and one value means *nothing*.
+pub const MAX_RECORDS: usize = NO_RECORD as usize;
+
+/// Records relative to an `f64` origin, and their attributes.
+///
+/// # Examples
+///
+/// A scene far from home keeps the digits of its records:
+///
+/// ```
+/// use glam::DVec3;
+/// use puncta_core::{Scene, Sphere};
+///
+/// let mut scene = Scene::new(vec![Sphere::new([0.25, 0.0, 0.0], 0.5)]);
+/// scene.origin = DVec3::new(1e7, 0.0, 0.0);
+/// assert_eq!(scene.position(0).x, 10_000_000.25);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene<R = Sphere> {
+    /// The world position that stored positions are relative to.
+    pub origin: DVec3,
+    /// The records; sorting reorders them.
+    pub records: Vec<R>,
+    /// One value for each record, reordered with the records.
+    pub attributes: Attributes,
+}
+
+/// What is known about records besides place and extent. Present columns have one value a record.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Attributes {
+    /// The index each record had in its file or array; `None` while they still lie in that order.
+    pub ids: Option<Vec<u32>>,
+    /// Colors: sRGB and alpha, which opaque renderers do not use.
+    pub colors: Option<Vec<[u8; 4]>>,
+    /// Atomic numbers; 0 for an unknown element.
+    pub elements: Option<Vec<u8>>,
+    /// Named measurements.
+    pub scalars: Vec<Scalar>,
+}
+
+/// One measurement for each record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scalar {
+    /// The name of the measurement.
+    pub name: String,
+    /// A value for each record; NaN where there is none.
+    pub values: Vec<f32>,
+}
+
+impl<R: Record> Scene<R> {
+    /// A scene around the origin, without attributes.
+    #[must_use]
+    pub fn new(records: Vec<R>) -> Self {
+        Self { origin: DVec3::ZERO, records, attributes: Attributes::default() }
+    }
+
+    /// The world position of a record.
+    ///
+    /// # Panics
+    ///
+    /// When there is no record `index`.
+    #[must_use]
+    pub fn position(&self, index: usize) -> DVec3 {
+        self.origin + self.records[index].position().as_dvec3()
+    }
+
+    /// The index that a record had before any sorting: what a user knows it by.
+    ///
+    /// # Panics
+    ///
+    /// When the scene has ids, but none for `index`.
+    #[must_use]
+    pub fn id(&self, index: u32) -> u32 {
+        self.attributes.ids.as_ref().map_or(index, |ids| ids[index as usize])
+    }
+
+    /// The scalar of this name.
+    #[must_use]
+    pub fn scalar(&self, name: &str) -> Option<&Scalar> {
+        self.attributes.scalars.iter().find(|scalar| scalar.name == name)
+    }
+
+    /// The world box around all records, radii included; those that are not finite are left out.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for record in &self.records {
+            let (position, radius) = (record.position().as_dvec3(), f64::from(record.radius()));
+            if position.is_finite() && radius.is_finite() {
+                bounds.add(position - radius);
+                bounds.add(position + radius);
+            }
+        }
+        Bounds { min: bounds.min + self.origin, max: bounds.max + self.origin }
+    }
+
+    /// Checks that there are ids enough and that each attribute has one value for each record.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::TooManyRecords`], [`Error::AttributeLength`] or [`Error::Origin`].
+    pub fn validate(&self) -> Result<(), Error> {
+        let records = self.records.len();
+        if records > MAX_RECORDS {
+            return Err(Error::TooManyRecords { records });
+        }
+        if !self.origin.is_finite() {
+            return Err(Error::Origin { origin: self.origin });
+        }
+        for (name, values) in self.attributes.lengths() {
+            if values != records {
+                return Err(Error::AttributeLength { name: name.to_owned(), values, records });
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes down the present order in [`Attributes::ids`], unless an order is there already.
+    pub fn keep_order(&mut self) {
+        let records = self.records.len();
+        self.attributes.ids.get_or_insert_with(|| (0..NO_RECORD).take(records).collect());
+    }
+
+    /// Swaps two records and their attributes.
+    ///
+    /// # Panics
+    ///
+    /// When there is no such record, or an attribute does not have its value.
+    #[inline]
+    pub fn swap(&mut self, a: usize, b: usize) {
+        self.records.swap(a, b);
+        self.attributes.swap(a, b);
+    }
+}
+
+impl Attributes {
+    /// Swaps the values of two records.
+    ///
+    /// # Panics
+    ///
+    /// When an attribute does not have such a value.
+    pub fn swap(&mut self, a: usize, b: usize) {
+        if let Some(ids) = &mut self.ids {
+            ids.swap(a, b);
+        }
+        if let Some(colors) = &mut self.colors {
+            colors.swap(a, b);
+        }
+        if let Some(elements) = &mut self.elements {
+            elements.swap(a, b);
+        }
+        for scalar in &mut self.scalars {
+            scalar.values.swap(a, b);
+        }
+    }
+
+    /// The bytes of all present columns.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.ids.as_ref().map_or(0, |ids| size_of_val(ids.as_slice()))
+            + self.colors.as_ref().map_or(0, |colors| size_of_val(colors.as_slice()))
+            + self.elements.as_ref().map_or(0, Vec::len)
+            + self.scalars.iter().map(|s| size_of_val(s.values.as_slice())).sum::<usize>()
+    }
+
+    /// The name and length of each present column.
+    fn lengths(&self) -> impl Iterator<Item = (&str, usize)> {
+        let ids = self.ids.as_ref().map(|ids| ("ids", ids.len()));
+        let colors = self.colors.as_ref().map(|colors| ("colors", colors.len()));
+        let elements = self.elements.as_ref().map(|elements| ("elements", elements.len()));
+        let scalars = self.scalars.iter().map(|s| (s.name.as_str(), s.values.len()));
+        ids.into_iter().chain(colors).chain(elements).chain(scalars)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn three() -> Scene {
+        let at = |x| Sphere::new([x, 0.0, 0.0], 1.0);
+        Scene::new(vec![at(0.0), at(1.0), at(2.0)])
+    }
+
+    #[test]
+    fn attributes_follow_a_swap() {
+        let mut scene = three();
+        scene.attributes.colors = Some(vec![[0; 4], [1; 4], [2; 4]]);
+        scene.attributes.elements = Some(vec![6, 7, 8]);
+        scene.attributes.scalars.push(Scalar { name: "speed".into(), values: vec![0.0, 1.0, 2.0] });
+        scene.keep_order();
+        scene.swap(0, 2);
+        assert_eq!(scene.id(0), 2);
+        assert_eq!(scene.records[0].center[0], 2.0);
+        assert_eq!(scene.attributes.colors.as_ref().map(|colors| colors[2]), Some([0; 4]));
+        assert_eq!(scene.attributes.elements, Some(vec![8, 7, 6]));
+        assert_eq!(scene.scalar("speed").map(|s| s.values[0]), Some(2.0));
+        assert_eq!(scene.attributes.bytes(), 3 * (4 + 4 + 1 + 4));
+    }
+
+    #[test]
+    fn lengths_that_differ_are_told() {
+        let mut scene = three();
+        scene.attributes.elements = Some(vec![1]);
+        let error = scene.validate().unwrap_err();
+        assert_eq!(error.to_string(), "attribute elements has 1 values for 3 records");
+    }
+
+    #[test]
+    fn records_that_are_not_finite_do_not_spoil_the_bounds() {
+        let mut scene = three();
+        scene.records.push(Sphere::new([f32::NAN, 0.0, 0.0], 1.0));
+        scene.records.push(Sphere::new([0.0, f32::INFINITY, 0.0], 1.0));
+        assert_eq!(scene.bounds().max, DVec3::new(3.0, 1.0, 1.0));
+    }
+}

@@ -1,0 +1,404 @@
+/*!
+The builder: readers push rows into it and it makes a scene of them.
+
+It does what all readers have in common: it chooses the origin, skips and counts rows that cannot be
+used, keeps the wanted columns, and gives rows without a radius an estimated one.
+
+# The origin
+
+A stored position is an `f32` offset from the origin, with an error of 2⁻²⁴ of its length; so the
+origin must lie near the data, but not so that it spoils numbers which `f32` holds exactly. Let `c`
+be the centre and `e` the longest side of the data's box. On each axis the origin is 0 where
+`|c| <= 1.5 e`, else `c` rounded to a multiple of `s`, the largest power of two up to `e`. Then
+
+* offsets are at most `2 e` long, and
+* if a coordinate `p` is an `f32`, so is `p - origin`: it is a multiple of `ulp(p)` and at most
+  `e / 2 + s / 2 <= 1.5 s`, while `|p| >= e >= s`, so `|p - origin| / ulp(p) <= 1.5 * 2^23 < 2^24`.
+
+Rows of single precision are stored as they are and moved to the origin at the end, exactly. Rows of
+double precision must know the origin at once: the first ones wait until there are enough to choose
+it. It lies among the data, so offsets are at most some 3 `e` long even if these rows tell little of
+the rest.
+*/
+
+use crate::{
+    ReadOptions,
+    error::{ErrorKind, Fault, Place, Problem},
+    radius,
+};
+use glam::DVec3;
+use puncta_core::{Attributes, MAX_RECORDS, Scalar, Scene, Sphere};
+
+/// How many rows of double precision wait for the origin to be chosen.
+const HEAD: usize = 32_768;
+
+/// What the coordinates of a file were before they became `f64`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Precision {
+    /// `f32`.
+    Single,
+    /// `f64`, or text.
+    Double,
+}
+
+/// The columns a file has besides positions and radii.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Columns {
+    pub(crate) color: bool,
+    pub(crate) element: bool,
+    pub(crate) scalars: Vec<String>,
+}
+
+/// A record of a file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row<'a> {
+    pub(crate) position: [f64; 3],
+    /// `None` if the file has none; it is estimated then.
+    pub(crate) radius: Option<f64>,
+    pub(crate) color: [u8; 4],
+    pub(crate) element: u8,
+    /// One value for each name in [`Columns::scalars`].
+    pub(crate) scalars: &'a [f32],
+}
+
+impl Default for Row<'_> {
+    fn default() -> Self {
+        Self { position: [0.0; 3], radius: None, color: [255; 4], element: 0, scalars: &[] }
+    }
+}
+
+/// What was found while reading.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// Records that could not be used, by reason.
+    pub skipped: Vec<Skipped>,
+    /// What else a user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Records that could not be used for one reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Skipped {
+    /// The reason.
+    pub problem: Problem,
+    /// How many there are.
+    pub count: u64,
+    /// Where the first one is.
+    pub first: Place,
+    /// The value at fault in the first one.
+    pub value: String,
+}
+
+impl Report {
+    /// How many records could not be used.
+    #[must_use]
+    pub fn skipped_count(&self) -> u64 {
+        self.skipped.iter().map(|skipped| skipped.count).sum()
+    }
+}
+
+/// A scene in the making.
+pub(crate) struct Builder<'a> {
+    options: &'a ReadOptions,
+    precision: Precision,
+    origin: Option<DVec3>,
+    /// Positions that wait for the origin.
+    head: Vec<[f64; 3]>,
+    records: Vec<Sphere>,
+    /// The index in the file of each record, once a row was skipped.
+    ids: Option<Vec<u32>>,
+    colors: Option<Vec<[u8; 4]>>,
+    elements: Option<Vec<u8>>,
+    /// The wanted scalars and where a row has them.
+    scalars: Vec<(usize, Scalar)>,
+    /// How many rows were pushed or skipped.
+    rows: u64,
+    report: Report,
+    radius_missing: bool,
+}
+
+impl<'a> Builder<'a> {
+    pub(crate) fn new(options: &'a ReadOptions, precision: Precision, columns: &Columns) -> Self {
+        let wanted = columns.scalars.iter().enumerate().filter(|(_, name)| options.wants(name));
+        let scalar = |name: &String| Scalar { name: name.clone(), values: Vec::new() };
+        Self {
+            options,
+            precision,
+            origin: None,
+            head: Vec::new(),
+            records: Vec::new(),
+            ids: None,
+            colors: columns.color.then(Vec::new),
+            elements: columns.element.then(Vec::new),
+            scalars: wanted.map(|(column, name)| (column, scalar(name))).collect(),
+            rows: 0,
+            report: Report::default(),
+            radius_missing: false,
+        }
+    }
+
+    /// Makes room for exactly `count` more rows. Only for counts that the file's size confirms.
+    pub(crate) fn reserve(&mut self, count: u64) -> Result<(), Fault> {
+        let total = count.saturating_add(self.records.len() as u64);
+        if total > MAX_RECORDS as u64 {
+            return Err(ErrorKind::TooManyRecords(total).into());
+        }
+        let count = usize::try_from(count).map_err(|_| ErrorKind::TooManyRecords(count))?;
+        self.records.reserve_exact(count);
+        if let Some(colors) = &mut self.colors {
+            colors.reserve_exact(count);
+        }
+        if let Some(elements) = &mut self.elements {
+            elements.reserve_exact(count);
+        }
+        for (_, scalar) in &mut self.scalars {
+            scalar.values.reserve_exact(count);
+        }
+        Ok(())
+    }
+
+    /// Adds a row, or skips it if it cannot be used.
+    pub(crate) fn push(&mut self, row: &Row<'_>, place: Place) -> Result<(), Fault> {
+        if !row.position.iter().all(|x| x.is_finite() && x.abs() <= f64::from(f32::MAX)) {
+            let [x, y, z] = row.position;
+            return self.skip(Problem::Position, place, || format!("({x}, {y}, {z})"));
+        }
+        let radius = self.options.radius.or(row.radius);
+        if let Some(radius) = radius
+            && !is_radius(radius * self.options.radius_scale)
+        {
+            return self.skip(Problem::Radius, place, || radius.to_string());
+        }
+        if self.records.len() == MAX_RECORDS {
+            return Err(ErrorKind::TooManyRecords(self.rows + 1).into());
+        }
+        self.radius_missing |= radius.is_none();
+        let radius = radius.map_or(f32::NAN, |radius| to_f32(radius * self.options.radius_scale));
+        let center = self.place(row.position);
+        self.records.push(Sphere::new(center, radius));
+        if let Some(ids) = &mut self.ids {
+            ids.push(to_id(self.rows));
+        }
+        if let Some(colors) = &mut self.colors {
+            colors.push(row.color);
+        }
+        if let Some(elements) = &mut self.elements {
+            elements.push(row.element);
+        }
+        for (column, scalar) in &mut self.scalars {
+            scalar.values.push(row.scalars.get(*column).copied().unwrap_or(f32::NAN));
+        }
+        self.rows += 1;
+        Ok(())
+    }
+
+    /// Counts a row that cannot be used; an error if reading is strict.
+    pub(crate) fn skip(
+        &mut self,
+        problem: Problem,
+        place: Place,
+        value: impl FnOnce() -> String,
+    ) -> Result<(), Fault> {
+        if self.options.strict {
+            let kind = ErrorKind::Record { problem, value: value() };
+            return Err(Fault { place: Some(place), kind });
+        }
+        self.ids.get_or_insert_with(|| (0..self.records.len() as u64).map(to_id).collect());
+        self.rows += 1;
+        match self.report.skipped.iter_mut().find(|skipped| skipped.problem == problem) {
+            Some(skipped) => skipped.count += 1,
+            None => {
+                let value = value();
+                self.report.skipped.push(Skipped { problem, count: 1, first: place, value });
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes something that a user should know.
+    pub(crate) fn warn(&mut self, warning: impl Into<String>) {
+        let warning = warning.into();
+        if !self.report.warnings.contains(&warning) {
+            self.report.warnings.push(warning);
+        }
+    }
+
+    /// The scene of all rows, and what was found on the way.
+    pub(crate) fn finish(mut self) -> Result<(Scene, Report), Fault> {
+        if self.records.is_empty() {
+            return Err(ErrorKind::NoRecords { skipped: self.report.skipped_count() }.into());
+        }
+        match self.precision {
+            Precision::Single => self.rebase(),
+            Precision::Double => self.settle(),
+        }
+        self.records.shrink_to_fit();
+        if self.radius_missing {
+            let scale = self.options.radius_scale;
+            let estimate = to_f32(f64::from(radius::estimate(&self.records)) * scale);
+            self.warn(format!("the file gives no radius; {estimate} was taken from the spacing"));
+            let missing = self.records.iter_mut().filter(|sphere| sphere.radius.is_nan());
+            missing.for_each(|sphere| sphere.radius = estimate);
+        }
+        let attributes = Attributes {
+            ids: self.ids,
+            colors: self.colors,
+            elements: self.elements,
+            scalars: self.scalars.into_iter().map(|(_, scalar)| scalar).collect(),
+        };
+        let origin = self.origin.unwrap_or(DVec3::ZERO);
+        Ok((Scene { origin, records: self.records, attributes }, self.report))
+    }
+
+    /// The offset to store for a position; it may be put right later.
+    fn place(&mut self, position: [f64; 3]) -> [f32; 3] {
+        if self.precision == Precision::Single {
+            return position.map(to_f32);
+        }
+        if self.head.len() == HEAD {
+            self.settle();
+        }
+        if let Some(origin) = self.origin {
+            return offset(position, origin);
+        }
+        self.head.push(position);
+        [0.0; 3]
+    }
+
+    /// Chooses the origin from the positions that wait, and stores their offsets.
+    fn settle(&mut self) {
+        if self.origin.is_none() {
+            let origin = choose_origin(self.head.iter().copied());
+            for (record, position) in self.records.iter_mut().zip(&self.head) {
+                record.center = offset(*position, origin);
+            }
+            self.origin = Some(origin);
+            self.head = Vec::new();
+        }
+    }
+
+    /// Moves absolute positions to an origin near them.
+    fn rebase(&mut self) {
+        let absolute = |sphere: &Sphere| sphere.center.map(f64::from);
+        let origin = choose_origin(self.records.iter().map(absolute));
+        if origin != DVec3::ZERO {
+            for record in &mut self.records {
+                record.center = offset(record.center.map(f64::from), origin);
+            }
+        }
+        self.origin = Some(origin);
+    }
+}
+
+/// The origin for these positions: see the module's text.
+fn choose_origin(positions: impl Iterator<Item = [f64; 3]>) -> DVec3 {
+    let mut bounds = puncta_core::Bounds::EMPTY;
+    positions.for_each(|position| bounds.add(position.into()));
+    if bounds.is_empty() {
+        return DVec3::ZERO;
+    }
+    let (center, extent) = (bounds.center(), bounds.extent().max_element());
+    // Points that coincide have no extent: their position itself is the best origin.
+    if extent == 0.0 {
+        return center;
+    }
+    let step = extent.log2().floor().exp2();
+    let round = |c: f64| if c.abs() <= 1.5 * extent { 0.0 } else { (c / step).round() * step };
+    DVec3::new(round(center.x), round(center.y), round(center.z))
+}
+
+fn offset(position: [f64; 3], origin: DVec3) -> [f32; 3] {
+    (DVec3::from(position) - origin).to_array().map(to_f32)
+}
+
+/// Whether a radius can be drawn and stored.
+pub(crate) fn is_radius(radius: f64) -> bool {
+    radius <= f64::from(f32::MAX) && radius >= f64::from(f32::MIN_POSITIVE)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+fn to_f32(x: f64) -> f32 {
+    x as f32
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "there are at most MAX_RECORDS kept rows")]
+fn to_id(row: u64) -> u32 {
+    row as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(positions: &[[f64; 3]], precision: Precision) -> Scene {
+        let options = ReadOptions::default().radius(1.0);
+        let mut builder = Builder::new(&options, precision, &Columns::default());
+        for &position in positions {
+            builder.push(&Row { position, ..Row::default() }, Place::Line(1)).unwrap();
+        }
+        builder.finish().unwrap().0
+    }
+
+    #[test]
+    fn positions_around_zero_are_stored_as_they_are() {
+        let scene = scene(&[[0.1, 0.2, 0.3], [0.9, 1.0, -0.25]], Precision::Double);
+        assert_eq!(scene.origin, DVec3::ZERO);
+        assert_eq!(scene.records[0].center, [0.1, 0.2, 0.3]);
+    }
+
+    #[test]
+    fn far_positions_keep_their_digits() {
+        let positions = [[637_000.01, 851_000.02, 450.03], [637_001.04, 851_002.05, 451.06]];
+        let scene = scene(&positions, Precision::Double);
+        for (index, position) in positions.iter().enumerate() {
+            assert!((scene.position(index) - DVec3::from(*position)).abs().max_element() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn moving_single_precision_is_exact() {
+        let positions: Vec<[f64; 3]> = (0..100_u16)
+            .map(|i| [1e7_f32 + f32::from(i), -3e5 + 0.1 * f32::from(i), 77.7].map(f64::from))
+            .collect();
+        let scene = scene(&positions, Precision::Single);
+        assert!(scene.origin.x != 0.0 && scene.origin.y != 0.0);
+        for (index, position) in positions.iter().enumerate() {
+            assert_eq!(scene.position(index), DVec3::from(*position));
+        }
+    }
+
+    #[test]
+    fn many_rows_of_double_precision_share_one_origin() {
+        let positions: Vec<[f64; 3]> =
+            (0..100_000_u32).map(|i| [1e7 + f64::from(i) * 0.5, 0.0, 0.0]).collect();
+        let scene = scene(&positions, Precision::Double);
+        for index in [0, 1, HEAD - 2, HEAD - 1, HEAD, HEAD + 1, 99_999] {
+            assert_eq!(scene.position(index), DVec3::from(positions[index]), "{index}");
+        }
+    }
+
+    #[test]
+    fn rows_that_cannot_be_used_are_counted_and_keep_ids_right() {
+        let options = ReadOptions::default();
+        let mut builder = Builder::new(&options, Precision::Double, &Columns::default());
+        let row =
+            |x, radius| Row { position: [x, 0.0, 0.0], radius: Some(radius), ..Row::default() };
+        for (x, radius) in [(0.0, 1.0), (f64::NAN, 1.0), (2.0, -1.0), (3.0, 0.0), (4.0, 1.0)] {
+            builder.push(&row(x, radius), Place::Line(7)).unwrap();
+        }
+        let (scene, report) = builder.finish().unwrap();
+        assert_eq!(scene.attributes.ids, Some(vec![0, 4]));
+        assert_eq!(report.skipped_count(), 3);
+        assert_eq!(report.skipped[1].value, "-1");
+    }
+
+    #[test]
+    fn strict_reading_names_the_value() {
+        let options = ReadOptions::default().strict(true);
+        let mut builder = Builder::new(&options, Precision::Double, &Columns::default());
+        let row = Row { position: [0.0, f64::INFINITY, 0.0], ..Row::default() };
+        let error = builder.push(&row, Place::Line(3)).unwrap_err().in_file("a.xyz");
+        let text = "a.xyz, line 3: a position that is not finite: (0, inf, 0)";
+        assert_eq!(error.to_string(), text);
+    }
+}

@@ -1,0 +1,117 @@
+//! Input: a stream that knows its place, for readers that tell where a file is wrong.
+
+use crate::error::{ErrorKind, Fault, Place};
+use std::io::{self, BufRead, Read};
+
+/// The longest line that is read; a longer one is no text.
+const LINE_MAX: usize = 1 << 20;
+
+/// A stream of bytes or lines.
+pub(crate) struct Input<'a> {
+    stream: Box<dyn BufRead + 'a>,
+    byte: u64,
+    line: u64,
+    /// The number of bytes from start to end, unless the stream is being decompressed.
+    length: Option<u64>,
+}
+
+impl<'a> Input<'a> {
+    pub(crate) fn new(stream: Box<dyn BufRead + 'a>, length: Option<u64>) -> Self {
+        Self { stream, byte: 0, line: 0, length }
+    }
+
+    /// The place of the next byte.
+    pub(crate) fn at_byte(&self) -> Place {
+        Place::Byte(self.byte)
+    }
+
+    /// The place of the line that was read last.
+    pub(crate) fn at_line(&self) -> Place {
+        Place::Line(self.line)
+    }
+
+    /// How many bytes are left, if that is known.
+    pub(crate) fn remaining(&self) -> Option<u64> {
+        self.length.map(|length| length.saturating_sub(self.byte))
+    }
+
+    /// Reads the next line into `line`, without its end; false at the end of the file.
+    pub(crate) fn line(&mut self, line: &mut Vec<u8>) -> Result<bool, Fault> {
+        line.clear();
+        let limit = LINE_MAX as u64 + 1;
+        let read = self.stream.by_ref().take(limit).read_until(b'\n', line);
+        self.line += 1;
+        let read =
+            read.map_err(|error| Fault { place: Some(self.at_line()), kind: error.into() })?;
+        self.byte += read as u64;
+        if line.len() > LINE_MAX {
+            let what = format!("a line must be shorter than {LINE_MAX} bytes");
+            return Err(Fault::invalid(self.at_line(), what, "longer"));
+        }
+        while line.last().is_some_and(|&last| last == b'\n' || last == b'\r') {
+            line.pop();
+        }
+        Ok(read > 0)
+    }
+
+    /// Reads the next line; it is an error if there is none. `what` names what it should hold.
+    pub(crate) fn expect_line(&mut self, line: &mut Vec<u8>, what: &str) -> Result<(), Fault> {
+        if self.line(line)? {
+            return Ok(());
+        }
+        let kind = ErrorKind::Truncated { what: what.to_owned(), needed: 1, left: 0 };
+        Err(Fault { place: Some(self.at_line()), kind })
+    }
+
+    /// Fills `buffer`; it is an error if the file ends first. `what` names what it should hold.
+    pub(crate) fn bytes(&mut self, buffer: &mut [u8], what: &str) -> Result<(), Fault> {
+        let (start, mut filled) = (self.at_byte(), 0);
+        while filled < buffer.len() {
+            match self.stream.read(&mut buffer[filled..]) {
+                Ok(0) => {
+                    let (needed, left) = (buffer.len() as u64, filled as u64);
+                    let kind = ErrorKind::Truncated { what: what.to_owned(), needed, left };
+                    return Err(Fault { place: Some(start), kind });
+                }
+                Ok(read) => filled += read,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(Fault { place: Some(start), kind: error.into() }),
+            }
+        }
+        self.byte += filled as u64;
+        Ok(())
+    }
+
+    /// Reads `N` bytes.
+    pub(crate) fn array<const N: usize>(&mut self, what: &str) -> Result<[u8; N], Fault> {
+        let mut bytes = [0; N];
+        self.bytes(&mut bytes, what)?;
+        Ok(bytes)
+    }
+
+    /// Checks, where the length is known, that `needed` more bytes are there.
+    ///
+    /// Call it before an allocation that a number in the file asks for.
+    pub(crate) fn require(&self, needed: u64, what: &str) -> Result<(), Fault> {
+        match self.remaining() {
+            Some(left) if left < needed => {
+                let kind = ErrorKind::Truncated { what: what.to_owned(), needed, left };
+                Err(Fault { place: Some(self.at_byte()), kind })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Passes over `count` bytes; it is an error if the file ends first.
+    pub(crate) fn skip(&mut self, count: u64, what: &str) -> Result<(), Fault> {
+        let start = self.at_byte();
+        let skipped = io::copy(&mut self.stream.by_ref().take(count), &mut io::sink())
+            .map_err(|error| Fault { place: Some(start), kind: error.into() })?;
+        self.byte += skipped;
+        if skipped == count {
+            return Ok(());
+        }
+        let kind = ErrorKind::Truncated { what: what.to_owned(), needed: count, left: skipped };
+        Err(Fault { place: Some(start), kind })
+    }
+}

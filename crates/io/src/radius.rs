@@ -1,0 +1,68 @@
+/*!
+A radius for records that come without one.
+
+Half the distance between neighbors makes neighboring spheres touch. So the estimate is the median,
+over a sample of the records, of the distance to the nearest other record, times a constant near one
+half that closes most of the gaps in scanned surfaces. The sample is small and evenly spread over
+the records, and each distance is found by looking at all of them: no structure is needed.
+*/
+
+use puncta_core::{Record, Sphere};
+
+/// How many distances are computed at most.
+const DISTANCES_MAX: usize = 1 << 28;
+
+/// The largest and the smallest number of sampled records.
+const SAMPLES: (usize, usize) = (512, 16);
+
+/// The share of the distance to the nearest neighbor that makes a good radius.
+const SHARE: f32 = 0.75;
+
+/// A radius with which these records look like what they are a sample of; records that coincide do
+/// not count. It is 1 where there are no two different positions.
+#[must_use]
+pub fn estimate(records: &[Sphere]) -> f32 {
+    let samples = (DISTANCES_MAX / records.len().max(1)).clamp(SAMPLES.1, SAMPLES.0);
+    let step = records.len().div_ceil(samples).max(1);
+    let mut distances: Vec<f32> = records
+        .iter()
+        .step_by(step)
+        .map(|record| nearest(record, records))
+        .filter(|distance| distance.is_finite())
+        .collect();
+    if distances.is_empty() {
+        return 1.0;
+    }
+    let middle = distances.len() / 2;
+    let (_, median, _) = distances.select_nth_unstable_by(middle, f32::total_cmp);
+    (SHARE * *median).max(f32::MIN_POSITIVE)
+}
+
+/// The distance from a record to the nearest one that lies elsewhere.
+fn nearest(record: &Sphere, records: &[Sphere]) -> f32 {
+    let position = record.position();
+    let squared = |other: &Sphere| (other.position() - position).length_squared();
+    let least = |least: f32, d: f32| if d > 0.0 { least.min(d) } else { least };
+    records.iter().map(squared).fold(f32::INFINITY, least).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lattice_gives_a_share_of_its_spacing() {
+        let lattice: Vec<Sphere> = (0..1000_u16)
+            .map(|i| [i % 10, i / 10 % 10, i / 100].map(|x| 2.0 * f32::from(x)))
+            .map(|center| Sphere::new(center, 0.0))
+            .collect();
+        assert_eq!(estimate(&lattice), 2.0 * SHARE);
+    }
+
+    #[test]
+    fn points_that_coincide_or_stand_alone_have_some_radius() {
+        assert_eq!(estimate(&[]), 1.0);
+        assert_eq!(estimate(&[Sphere::default()]), 1.0);
+        assert_eq!(estimate(&[Sphere::default(); 9]), 1.0);
+    }
+}

@@ -1,0 +1,2 @@
+//! facade
+pub use puncta_core as core;
