@@ -1,1 +1,29 @@
-//! occlusion
+/*!
+Culling and visibility orders: the stages between a grid and a renderer.
+
+* [`FrustumCull`] drops bricks that lie outside of the view.
+* [`Depth`] orders the rest by view depth, nearest first.
+
+```
+use glam::DVec3;
+use puncta_core::{Frame, Scene, Sphere, Stage, View, Visible};
+use puncta_grid::{Grid, GridConfig};
+use puncta_occlusion::{Depth, FrustumCull};
+
+let mut scene = Scene::new((0..100_u8).map(|i| Sphere::new([f32::from(i), 0.0, 0.0], 0.5)).collect());
+let grid = Grid::sort_scene(&mut scene, &GridConfig::longest_side(10))?;
+let view = View::look_at(DVec3::new(55.0, 0.0, 0.0), DVec3::new(99.0, 0.0, 0.0), DVec3::Z)?;
+
+let mut visible = Visible::all(grid.bricks(), scene.origin, &view);
+let frame = Frame { view: &view, origin: scene.origin, bricks: &grid };
+(FrustumCull, Depth).apply(&frame, &mut visible);
+let seen: Vec<u32> = visible.bricks.iter().map(|brick| brick.index).collect();
+assert_eq!(seen, [5, 6, 7, 8, 9]);
+# Ok::<(), Box<dyn std::error::Error>>(())
+```
+*/
+
+mod depth;
+mod frustum;
+
+pub use crate::{depth::Depth, frustum::FrustumCull};
