@@ -1,0 +1,109 @@
+//! The renderer: bands of rows, drawn in parallel.
+
+use crate::{
+    Error,
+    band::{Band, stride},
+    camera::Camera,
+};
+use puncta_core::{Batch, NO_RECORD, Picture, Progress, Record, Renderer, View};
+use rayon::prelude::*;
+use std::ops::RangeInclusive;
+
+/// The number of rows of a band: enough that few spheres lie in two of them, and few enough that
+/// all threads have work and a band stays in the cache.
+const BAND_ROWS: usize = 32;
+
+/// Draws spheres exactly, on all cores of the present rayon pool.
+///
+/// At each pixel the picture shows the nearest point where its ray enters a sphere, at a view depth
+/// of at least [`View::near`]; of equal depths the one with the lower [`puncta_core::Scene::id`]. So
+/// a sphere that holds the camera is not drawn, and what the near plane cuts open is hollow. A sphere
+/// that covers no pixel's centre is not seen.
+///
+/// Against exact arithmetic, a silhouette is off by at most 1e-4 of a pixel and a view depth by at
+/// most 2⁻²² of itself. Set-up is in `f64`, from offsets relative to the eye; so neither a narrow
+/// angle nor the distance of the scene from the world's origin changes that.
+///
+/// # Examples
+///
+/// See the [crate's page](crate).
+#[derive(Clone, Debug, Default)]
+pub struct CpuRenderer {
+    frame: Option<Drawing>,
+}
+
+/// A picture that is being drawn.
+#[derive(Clone, Debug)]
+struct Drawing {
+    view: View,
+    depth: Vec<f32>,
+    id: Vec<u32>,
+    progress: Progress,
+}
+
+impl<R: Record> Renderer<R> for CpuRenderer {
+    type Error = Error;
+
+    fn begin(&mut self, view: &View) -> Result<(), Error> {
+        let pixels = stride(view.width()) * view.height() as usize;
+        let mut drawing = self.frame.take().map_or_else(
+            || Drawing {
+                view: view.clone(),
+                depth: Vec::new(),
+                id: Vec::new(),
+                progress: Progress::default(),
+            },
+            |old| Drawing { view: view.clone(), progress: Progress::default(), ..old },
+        );
+        drawing.depth.clear();
+        drawing.depth.resize(pixels, f32::INFINITY);
+        drawing.id.clear();
+        drawing.id.resize(pixels, NO_RECORD);
+        self.frame = Some(drawing);
+        Ok(())
+    }
+
+    fn draw(&mut self, batch: &Batch<'_, R>) -> Result<(), Error> {
+        let drawing = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
+        let camera = Camera::new(&drawing.view, batch.scene.origin);
+        let rows_of_bricks = rows_of_bricks(&camera, batch);
+        let stride = stride(drawing.view.width());
+        let depths = drawing.depth.par_chunks_mut(stride * BAND_ROWS);
+        let ids = drawing.id.par_chunks_mut(stride * BAND_ROWS);
+        depths.zip(ids).enumerate().with_max_len(1).for_each(|(band, (depth, id))| {
+            let first_row = (band * BAND_ROWS) as i64;
+            Band { first_row, stride, depth, id }.draw(&camera, batch, &rows_of_bricks);
+        });
+        drawing.progress += Progress::of(batch.bricks, batch.visible);
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Picture, Error> {
+        let drawing = self.frame.as_ref().ok_or(puncta_core::Error::NotBegun)?;
+        let mut picture = Picture::new(drawing.view.width(), drawing.view.height())?;
+        let (width, stride) = (picture.width as usize, stride(picture.width));
+        let seen = |row: usize| row * stride..row * stride + width;
+        for (row, (depth, id)) in
+            picture.depth.chunks_mut(width).zip(picture.id.chunks_mut(width)).enumerate()
+        {
+            depth.copy_from_slice(&drawing.depth[seen(row)]);
+            id.copy_from_slice(&drawing.id[seen(row)]);
+        }
+        Ok(picture)
+    }
+
+    fn progress(&self) -> Progress {
+        self.frame.as_ref().map_or_else(Progress::default, |drawing| drawing.progress)
+    }
+}
+
+/// The rows that each brick of the batch may cover.
+fn rows_of_bricks<R: Record>(camera: &Camera, batch: &Batch<'_, R>) -> Vec<RangeInclusive<i64>> {
+    let rows = |index: u32| {
+        let brick = &batch.bricks[index as usize];
+        let (min, max) = (brick.bounds.min.as_dvec3(), brick.bounds.max.as_dvec3());
+        let half = (max - min) * 0.5;
+        camera.rows_of_box(min + half, half + f64::from(brick.radius_max))
+    };
+    batch.visible.par_iter().map(|visible| rows(visible.index)).collect()
+}

@@ -1,0 +1,342 @@
+/*!
+Shading: from ids to an image.
+
+The light sits at the camera. With the cosine `f` between the surface's normal and the way back along
+the ray, a surface of color `c` shows `c (ambient + (1 - ambient) f)`. Normals are computed again in
+`f64` from the record and the pixel's ray, not from the depth, whose last digits would show.
+
+Colors are mixed as light, that is linearly: sRGB is decoded before and encoded after. A picture may
+have more pixels than the image; then a block of them is averaged for each pixel of the image, which
+smooths silhouettes.
+*/
+
+use crate::{Camera, ColorMap, Error};
+use glam::{DVec3, Vec3};
+use puncta_core::{Image, NO_RECORD, Picture, Record, Scene, View};
+use rayon::prelude::*;
+
+/// How to make an image of a picture.
+#[derive(Clone, Debug)]
+pub struct Shading<'a> {
+    /// Where the colors of records come from.
+    pub coloring: Coloring<'a>,
+    /// What is seen where there is no record.
+    pub background: Background,
+    /// The share of light that reaches a surface from everywhere, 0 to 1.
+    pub ambient: f32,
+    /// How many pixels of the picture make one of the image, along each side.
+    pub supersample: u32,
+}
+
+impl Default for Shading<'_> {
+    fn default() -> Self {
+        Self {
+            coloring: Coloring::Uniform([196, 203, 212]),
+            background: Background::default(),
+            ambient: 0.18,
+            supersample: 1,
+        }
+    }
+}
+
+/// Where the colors of records come from. All colors are sRGB.
+#[derive(Clone, Copy, Debug)]
+pub enum Coloring<'a> {
+    /// One color for all.
+    Uniform([u8; 3]),
+    /// The colors of the scene.
+    Colors,
+    /// A color for each atomic number; numbers beyond the list get the first one.
+    Elements(&'a [[u8; 3]]),
+    /// A scalar through a color map.
+    Scalar {
+        /// The name of the scalar.
+        name: &'a str,
+        /// The colors of the range.
+        map: &'a ColorMap,
+        /// The values of the map's ends; `None` for nearly the range of the scalar.
+        range: Option<[f64; 2]>,
+    },
+    /// The distance along an axis through a color map.
+    Height {
+        /// The direction that is up in the world.
+        axis: DVec3,
+        /// The colors of the range.
+        map: &'a ColorMap,
+        /// The values of the map's ends; `None` for nearly the range of the scene.
+        range: Option<[f64; 2]>,
+    },
+}
+
+/// What is seen where there is no record. All colors are sRGB.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Background {
+    /// One color.
+    Solid([u8; 3]),
+    /// A color at the top row that turns into another at the bottom row.
+    Gradient([u8; 3], [u8; 3]),
+    /// Nothing: the image has alpha 0 there.
+    Transparent,
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self::Gradient([24, 28, 36], [66, 75, 88])
+    }
+}
+
+/// Makes an image of a picture of this scene.
+///
+/// The image has the size of `view`; `picture` has [`Shading::supersample`] times as many rows and
+/// columns.
+///
+/// # Errors
+///
+/// When the sizes do not go together, the picture is not one of this scene, or the scene lacks the
+/// column to color by.
+pub fn shade<R: Record>(
+    scene: &Scene<R>,
+    view: &View,
+    picture: &Picture,
+    shading: &Shading<'_>,
+) -> Result<Image, Error> {
+    let factor = check(scene, view, picture, shading)?;
+    let fine = view.clone().with_size(picture.width, picture.height)?;
+    let camera = Camera::new(&fine, scene.origin);
+    let colors = Colors::new(scene, shading.coloring)?;
+    let decode: [f32; 256] = std::array::from_fn(|byte| decode(byte as f32 / 255.0));
+    let light = |column: usize, row: usize| -> Option<Vec3> {
+        let id = picture.id[row * picture.width as usize + column];
+        let record = scene.records.get(id as usize)?;
+        let center = camera.place(record.position().as_dvec3());
+        let ray = camera.ray(column as f64, row as f64);
+        let hit = camera.hit(ray, center, f64::from(record.radius()));
+        // At a silhouette the surface is seen edge-on, whatever rounding says.
+        let facing = hit.map_or(0.0, |hit| to_f32(hit.facing).clamp(0.0, 1.0));
+        let color = Vec3::from(colors.of(id as usize, record).map(|c| decode[usize::from(c)]));
+        Some(color * (shading.ambient + (1.0 - shading.ambient) * facing))
+    };
+    let (width, height) = (view.width() as usize, view.height() as usize);
+    let mut pixels = vec![[0; 4]; width * height];
+    pixels.par_chunks_mut(width).enumerate().for_each(|(row, pixels)| {
+        let background = background(shading.background, row, height);
+        for (column, pixel) in pixels.iter_mut().enumerate() {
+            let (mut sum, mut covered) = (Vec3::ZERO, 0_u32);
+            for i in 0..factor * factor {
+                let (x, y) = (column * factor + i % factor, row * factor + i / factor);
+                if let Some(light) = light(x, y) {
+                    sum += light;
+                    covered += 1;
+                }
+            }
+            *pixel = mix(sum, covered, (factor * factor) as f32, background);
+        }
+    });
+    Ok(Image { width: view.width(), height: view.height(), pixels })
+}
+
+impl Coloring<'_> {
+    /// The values that the ends of the color map stand for; `None` if there is no color map.
+    ///
+    /// Unless it is given, the range leaves out the outermost 0.2 % of the records on either side:
+    /// a few strays would turn everything else into one color.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoColumn`] when the scene has no such scalar.
+    pub fn range<R: Record>(&self, scene: &Scene<R>) -> Result<Option<[f64; 2]>, Error> {
+        Ok(match *self {
+            Coloring::Scalar { range: Some(range), .. }
+            | Coloring::Height { range: Some(range), .. } => Some(range),
+            Coloring::Scalar { name, .. } => {
+                let values = scalar(scene, name)?;
+                Some(inner_range(|| values.iter().map(|&value| f64::from(value))))
+            }
+            Coloring::Height { axis, .. } => Some(inner_range(|| {
+                let offsets = scene.records.iter().map(|record| record.position().as_dvec3());
+                offsets.map(|offset| axis.dot(scene.origin + offset))
+            })),
+            _ => None,
+        })
+    }
+}
+
+/// Colors by record.
+enum Colors<'a> {
+    Uniform([u8; 3]),
+    Column(&'a [[u8; 4]]),
+    Elements(&'a [u8], &'a [[u8; 3]]),
+    Scalar(&'a [f32], &'a ColorMap, [f64; 2]),
+    Height(DVec3, DVec3, &'a ColorMap, [f64; 2]),
+}
+
+impl<'a> Colors<'a> {
+    fn new<R: Record>(scene: &'a Scene<R>, coloring: Coloring<'a>) -> Result<Self, Error> {
+        let missing = |what: &str| Error::NoColumn { what: what.to_owned() };
+        let range = coloring.range(scene)?.unwrap_or([0.0, 1.0]);
+        Ok(match coloring {
+            Coloring::Uniform(color) => Self::Uniform(color),
+            Coloring::Colors => {
+                let colors = scene.attributes.colors.as_ref();
+                Self::Column(colors.ok_or_else(|| missing("colors"))?)
+            }
+            Coloring::Elements(palette) => {
+                let elements = scene.attributes.elements.as_ref();
+                Self::Elements(elements.ok_or_else(|| missing("elements"))?, palette)
+            }
+            Coloring::Scalar { name, map, .. } => Self::Scalar(scalar(scene, name)?, map, range),
+            Coloring::Height { axis, map, .. } => Self::Height(axis, scene.origin, map, range),
+        })
+    }
+
+    fn of<R: Record>(&self, id: usize, record: &R) -> [u8; 3] {
+        let share = |value: f64, [low, high]: [f64; 2]| {
+            if high > low { (value - low) / (high - low) } else { 0.5 }
+        };
+        match *self {
+            Self::Uniform(color) => color,
+            Self::Column(colors) => [colors[id][0], colors[id][1], colors[id][2]],
+            Self::Elements(elements, palette) => {
+                let known = palette.get(usize::from(elements[id])).or(palette.first());
+                known.copied().unwrap_or([128; 3])
+            }
+            Self::Scalar(values, map, range) => map.color(share(f64::from(values[id]), range)),
+            Self::Height(axis, origin, map, range) => {
+                let height = axis.dot(origin + record.position().as_dvec3());
+                map.color(share(height, range))
+            }
+        }
+    }
+}
+
+fn scalar<'a, R: Record>(scene: &'a Scene<R>, name: &str) -> Result<&'a [f32], Error> {
+    let scalar = scene.scalar(name).ok_or_else(|| {
+        let names: Vec<&str> = scene.attributes.scalars.iter().map(|s| s.name.as_str()).collect();
+        let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        Error::NoColumn { what: format!("scalar {name:?} (it has {known})") }
+    })?;
+    Ok(&scalar.values)
+}
+
+/// Checks sizes and ids, and returns the supersampling factor.
+fn check<R: Record>(
+    scene: &Scene<R>,
+    view: &View,
+    picture: &Picture,
+    shading: &Shading<'_>,
+) -> Result<usize, Error> {
+    scene.validate()?;
+    let factor = shading.supersample.max(1);
+    let (pictured, viewed) = ((picture.width, picture.height), (view.width(), view.height()));
+    let fits = |fine: u32, coarse: u32| u64::from(fine) == u64::from(coarse) * u64::from(factor);
+    let pixels = picture.width as usize * picture.height as usize;
+    if !(fits(pictured.0, viewed.0) && fits(pictured.1, viewed.1) && picture.id.len() == pixels) {
+        return Err(Error::Size { picture: pictured, view: viewed, supersample: factor });
+    }
+    let records = scene.records.len();
+    let unknown = |id: &&u32| **id != NO_RECORD && **id as usize >= records;
+    match picture.id.iter().find(unknown) {
+        Some(&id) => Err(Error::UnknownRecord { id, records }),
+        None => Ok(factor as usize),
+    }
+}
+
+/// The range of values without the outermost 0.2 % on either side, to a 4096th of the whole range.
+fn inner_range<I: Iterator<Item = f64>>(values: impl Fn() -> I) -> [f64; 2] {
+    const BINS: usize = 4096;
+    let finite = || values().filter(|value| value.is_finite());
+    let low = finite().fold(f64::INFINITY, f64::min);
+    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    let width = (high - low) / BINS as f64;
+    if width.is_nan() || width <= 0.0 || width.is_infinite() {
+        return if low <= high { [low, high] } else { [0.0, 1.0] };
+    }
+    let mut bins = [0_u64; BINS];
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
+    finite().for_each(|value| bins[(((value - low) / width) as usize).min(BINS - 1)] += 1);
+    let outside = bins.iter().sum::<u64>() / 500;
+    let cut = |bins: &mut dyn Iterator<Item = &u64>| {
+        let mut passed = 0;
+        bins.take_while(|&&bin| {
+            passed += bin;
+            passed <= outside
+        })
+        .count()
+    };
+    let (first, last) = (cut(&mut bins.iter()), cut(&mut bins.iter().rev()));
+    [low + first as f64 * width, high - last as f64 * width]
+}
+
+/// Linear color of the background at a row; `None` if there is none.
+fn background(background: Background, row: usize, height: usize) -> Option<Vec3> {
+    let linear = |color: [u8; 3]| Vec3::from(color.map(|c| decode(f32::from(c) / 255.0)));
+    match background {
+        Background::Solid(color) => Some(linear(color)),
+        Background::Gradient(top, bottom) => {
+            // Mixed in sRGB, which is more even to the eye than light.
+            let share = row as f32 / (height.max(2) - 1) as f32;
+            let ends = top.map(f32::from).into_iter().zip(bottom.map(f32::from));
+            let mixed: Vec<f32> =
+                ends.map(|(a, b)| decode((a + (b - a) * share) / 255.0)).collect();
+            Some(Vec3::from_slice(&mixed))
+        }
+        Background::Transparent => None,
+    }
+}
+
+/// A pixel from the sum of its covered samples.
+fn mix(sum: Vec3, covered: u32, samples: f32, background: Option<Vec3>) -> [u8; 4] {
+    let share = covered as f32 / samples;
+    let (color, alpha) = match background {
+        Some(background) => (sum / samples + background * (1.0 - share), 1.0),
+        None if covered == 0 => (Vec3::ZERO, 0.0),
+        None => (sum / covered as f32, share),
+    };
+    let [r, g, b] = color.to_array().map(|c| to_byte(encode(c)));
+    [r, g, b, to_byte(alpha)]
+}
+
+fn decode(srgb: f32) -> f32 {
+    if srgb <= 0.040_45 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
+}
+
+fn encode(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is clamped")]
+fn to_byte(share: f32) -> u8 {
+    (share.clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+fn to_f32(x: f64) -> f32 {
+    x as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_survive_decoding_and_encoding() {
+        for byte in 0..=255_u8 {
+            assert_eq!(to_byte(encode(decode(f32::from(byte) / 255.0))), byte);
+        }
+    }
+
+    #[test]
+    fn strays_do_not_stretch_the_range() {
+        let values = || (0..10_000).map(f64::from).chain([1e6, -1e6, f64::NAN]);
+        let [low, high] = inner_range(values);
+        assert!((-1000.0..50.0).contains(&low) && (9900.0..11_000.0).contains(&high));
+        assert_eq!(inner_range(|| [3.0, 3.0].into_iter()), [3.0, 3.0]);
+        assert_eq!(inner_range(|| [f64::NAN].into_iter()), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn transparent_pixels_keep_straight_colors() {
+        assert_eq!(mix(Vec3::splat(2.0), 2, 4.0, None), [255, 255, 255, 128]);
+        assert_eq!(mix(Vec3::ZERO, 0, 4.0, None), [0; 4]);
+    }
+}
