@@ -1,2 +1,16 @@
-//! facade
+#![doc = include_str!("../../README.md")]
+
 pub use puncta_core as core;
+pub use puncta_cpu as cpu;
+pub use puncta_grid as grid;
+pub use puncta_io as io;
+pub use puncta_occlusion as occlusion;
+
+pub use puncta_core::{
+    Batch, Bounds, Brick, Frame, Image, NO_RECORD, Picture, Pipeline, Projection, Record, Renderer,
+    Scene, Source, Sphere, Stage, Step, View, Visible,
+};
+pub use puncta_cpu::{Background, ColorMap, Coloring, CpuRenderer, Shading, shade};
+pub use puncta_grid::{Grid, GridConfig, Resolution};
+pub use puncta_io::{Format, Loaded, ReadOptions};
+pub use puncta_occlusion::{Depth, FrustumCull};

@@ -37,6 +37,7 @@ mod error;
 mod image;
 mod picture;
 mod pipeline;
+mod range;
 mod record;
 mod scene;
 mod source;
@@ -49,6 +50,7 @@ pub use crate::{
     image::Image,
     picture::{NO_RECORD, Picture},
     pipeline::{Batch, Frame, Pipeline, Progress, Progressive, Renderer, Stage, Step},
+    range::inner_range,
     record::{Record, Sphere},
     scene::{Attributes, MAX_RECORDS, Scalar, Scene},
     source::{SliceSource, Source},

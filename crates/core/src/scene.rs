@@ -1,6 +1,6 @@
 //! Scenes: records, the origin they are relative to, and what else is known about them.
 
-use crate::{Bounds, Error, NO_RECORD, Record, Sphere};
+use crate::{Bounds, Error, NO_RECORD, Record, Sphere, inner_range};
 use glam::DVec3;
 
 /// The largest number of records in a scene: ids are `u32`, and one value means *nothing*.
@@ -97,6 +97,18 @@ impl<R: Record> Scene<R> {
             }
         }
         Bounds { min: bounds.min + self.origin, max: bounds.max + self.origin }
+    }
+
+    /// The world box around nearly all records: on each axis a share of `outside` at either end may
+    /// lie beyond it. Strays that blow up [`Scene::bounds`] are left out.
+    #[must_use]
+    pub fn inner_bounds(&self, outside: f64) -> Bounds {
+        let offsets = || self.records.iter().map(|record| record.position().as_dvec3());
+        let along = |axis: usize| inner_range(|| offsets().map(|offset| offset[axis]), outside);
+        let [x, y, z] = [along(0), along(1), along(2)];
+        let min = DVec3::new(x[0], y[0], z[0]);
+        let max = DVec3::new(x[1], y[1], z[1]);
+        Bounds { min: self.origin + min, max: self.origin + max }
     }
 
     /// Checks that there are ids enough and that each attribute has one value for each record.

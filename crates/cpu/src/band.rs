@@ -18,6 +18,25 @@ pub(crate) struct Band<'a> {
     pub(crate) id: &'a mut [u32],
 }
 
+/// A sphere in camera coordinates.
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    center: DVec3,
+    radius: f64,
+    /// A view depth in front of which the sphere has no point.
+    nearest: f64,
+    id: u32,
+}
+
+/// The places of the bits that are set.
+fn bits(mut mask: u32) -> impl Iterator<Item = u32> {
+    std::iter::from_fn(move || {
+        let place = (mask != 0).then(|| mask.trailing_zeros())?;
+        mask &= mask - 1;
+        Some(place)
+    })
+}
+
 /// The number of pixels of a row in memory.
 pub(crate) fn stride(width: u32) -> usize {
     (width as usize).next_multiple_of(LANES) + LANES
@@ -55,11 +74,13 @@ impl Band<'_> {
         if first > last || screen.columns.is_empty() {
             return;
         }
+        let nearest = center.z - radius - 1e-6 * (center.z.abs() + radius);
+        let ball = Ball { center, radius, nearest, id };
         // Of two records at equal depth the one with the lower original id is shown.
         let wins = |id: u32, other: u32| scene.id(id) < scene.id(other);
         match Disc::new(camera, center, radius) {
-            Some(disc) => self.draw_disc(camera, &disc, &screen, id, wins),
-            None => self.draw_exact(camera, (center, radius), &screen, id, wins),
+            Some(disc) => self.draw_disc(camera, &disc, &ball, &screen, wins),
+            None => self.draw_exact(camera, &ball, &screen, wins),
         }
     }
 
@@ -68,8 +89,8 @@ impl Band<'_> {
         &mut self,
         camera: &Camera,
         disc: &Disc,
+        ball: &Ball,
         screen: &ScreenBox,
-        id: u32,
         wins: impl Fn(u32, u32) -> bool,
     ) {
         for row in screen.rows.clone() {
@@ -78,45 +99,55 @@ impl Band<'_> {
                 let Some(mut target) = self.target(row, column) else {
                     return;
                 };
-                let mut ties = disc.draw(camera, row_of_disc, column as f64, &mut target, id);
-                while ties != 0 {
-                    let lane = ties.trailing_zeros() as usize;
-                    if wins(id, target.id[lane]) {
-                        target.id[lane] = id;
+                let left = disc.draw(camera, row_of_disc, column as f64, &mut target, ball.id);
+                for lane in bits(left.ties) {
+                    if wins(ball.id, target.id[lane as usize]) {
+                        target.id[lane as usize] = ball.id;
                     }
-                    ties &= ties - 1;
+                }
+                for lane in bits(left.doubts) {
+                    self.draw_pixel(camera, ball, (row, column + i64::from(lane)), &wins);
                 }
             }
         }
     }
 
     /// Draws any sphere, pixel by pixel in `f64`.
-    #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
     fn draw_exact(
         &mut self,
         camera: &Camera,
-        (center, radius): (DVec3, f64),
+        ball: &Ball,
         screen: &ScreenBox,
-        id: u32,
         wins: impl Fn(u32, u32) -> bool,
     ) {
-        let nearest = ((center.z - radius) * (1.0 - 1e-6)) as f32;
         for row in screen.rows.clone() {
             for column in screen.columns.clone() {
-                let pixel = self.pixel(row, column);
-                if self.depth[pixel] < nearest {
-                    continue;
-                }
-                let ray = camera.ray(column as f64, row as f64);
-                let Some(depth) = camera.depth(ray, center, radius) else {
-                    continue;
-                };
-                let depth = depth as f32;
-                let old = self.depth[pixel];
-                if depth < old || depth == old && wins(id, self.id[pixel]) {
-                    self.depth[pixel] = depth;
-                    self.id[pixel] = id;
-                }
+                self.draw_pixel(camera, ball, (row, column), &wins);
+            }
+        }
+    }
+
+    /// Draws one pixel of a sphere in `f64`.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+    fn draw_pixel(
+        &mut self,
+        camera: &Camera,
+        ball: &Ball,
+        (row, column): (i64, i64),
+        wins: impl Fn(u32, u32) -> bool,
+    ) {
+        let pixel = self.pixel(row, column);
+        let (old, old_id) = (self.depth[pixel], self.id[pixel]);
+        if f64::from(old) < ball.nearest {
+            return;
+        }
+        let ray = camera.ray(column as f64, row as f64);
+        if let Some(depth) = camera.depth(ray, ball.center, ball.radius) {
+            let depth = depth as f32;
+            if depth < old || depth == old && wins(ball.id, old_id) {
+                self.depth[pixel] = depth;
+                self.id[pixel] = ball.id;
             }
         }
     }

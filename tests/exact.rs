@@ -1,0 +1,221 @@
+//! Promise 1: against a brute-force reference in `f64`, ids and depths differ nowhere but where the
+//! answer hangs on a hair.
+
+use glam::{DVec3, Vec3};
+use naive::Verdict;
+use puncta::{
+    CpuRenderer, Depth, FrustumCull, Grid, GridConfig, Picture, Pipeline, Scene, Sphere, View,
+};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+mod naive;
+
+/// Uniform in a cube, with radii that are uniform in their logarithm.
+fn cloud(random: &mut Pcg64Mcg, count: usize, half: f32, radii: [f32; 2]) -> Vec<Sphere> {
+    let mut sphere = || {
+        let center = [0; 3].map(|_| half * (random.random::<f32>() * 2.0 - 1.0));
+        let share = random.random::<f32>();
+        Sphere { center, radius: radii[0] * (radii[1] / radii[0]).powf(share) }
+    };
+    (0..count).map(|_| sphere()).collect()
+}
+
+fn render(scene: &mut Scene, view: &View, cells: u32) -> Picture {
+    let grid = Grid::sort_scene(scene, &GridConfig::longest_side(cells)).unwrap();
+    let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
+    pipeline.render(scene, &grid, view).unwrap()
+}
+
+fn check(name: &str, mut scene: Scene, view: &View) -> Verdict {
+    let picture = render(&mut scene, view, 8);
+    let verdict =
+        naive::compare(&scene, view, &picture).unwrap_or_else(|what| panic!("{name}: {what}"));
+    println!("{name:<36} covered {:>6} undecided {:>4}", verdict.covered, verdict.undecided);
+    verdict
+}
+
+/// A view from a random place at this distance, with a random roll.
+fn view(random: &mut Pcg64Mcg, distance: f64, target: DVec3) -> View {
+    let mut axis = || DVec3::from([0; 3].map(|_| random.random::<f64>() - 0.5)).normalize();
+    let eye = target + axis() * distance;
+    View::look_at(eye, target, axis()).unwrap().with_size(160, 120).unwrap()
+}
+
+/// The scenes of the promise: their names, records and views.
+fn scenes() -> Vec<(String, Scene, View)> {
+    let mut random = Pcg64Mcg::seed_from_u64(20);
+    let mut scenes = Vec::new();
+    let mut add = |name: String, scene, view| scenes.push((name, scene, view));
+    let fine = [1e-3, 0.05];
+    let four_decades = [3e-5, 0.3];
+    for round in 0..4 {
+        let scene = Scene::new(cloud(&mut random, 1500, 1.0, four_decades));
+        let outside = view(&mut random, 3.0, DVec3::ZERO);
+        add(format!("four decades of radii {round}"), scene, outside);
+
+        let scene = Scene::new(cloud(&mut random, 1500, 1.0, fine));
+        let height = 0.2 + random.random::<f64>() * 2.0;
+        let parallel = view(&mut random, 3.0, DVec3::ZERO).with_orthographic(height).unwrap();
+        add(format!("orthographic {round}"), scene, parallel);
+
+        let scene = Scene::new(cloud(&mut random, 1500, 1.0, four_decades));
+        let inside = view(&mut random, 0.6, DVec3::ZERO);
+        add(format!("camera inside the cloud {round}"), scene, inside);
+
+        let scene = Scene::new(cloud(&mut random, 1500, 1.0, [0.01, 0.3]));
+        let cut = view(&mut random, 1.0, DVec3::ZERO).with_near(0.3).unwrap();
+        let cut = if round % 2 == 0 { cut } else { cut.with_orthographic(1.5).unwrap() };
+        add(format!("near plane cuts spheres {round}"), scene, cut);
+    }
+    let scene = Scene::new(cloud(&mut random, 1500, 1.0, fine));
+    let narrow = view(&mut random, 1000.0, DVec3::ZERO);
+    add(
+        "0.1 degrees from 1000 units".into(),
+        scene,
+        narrow.with_perspective(0.1_f64.to_radians()).unwrap(),
+    );
+
+    let scene = Scene::new(cloud(&mut random, 1500, 1.0, fine));
+    let wide = view(&mut random, 0.9, DVec3::ZERO);
+    add("95 degrees".into(), scene, wide.with_perspective(95_f64.to_radians()).unwrap());
+
+    let mut scene = Scene::new(cloud(&mut random, 1500, 1.0, fine));
+    scene.origin = DVec3::new(1e7, -1e7, 1e7);
+    let far = view(&mut random, 3.0, scene.origin);
+    add("moved by 1e7".into(), scene, far);
+
+    // Large discs at a middling distance: where f32 has the least to spare.
+    let scene = Scene::new(cloud(&mut random, 60, 1.0, [0.05, 0.2]));
+    let large = view(&mut random, 6.0, DVec3::ZERO);
+    add("large discs".into(), scene, large.with_perspective(20_f64.to_radians()).unwrap());
+    scenes
+}
+
+#[test]
+fn pictures_agree_with_the_reference() {
+    let mut total = Verdict::default();
+    let scenes = scenes();
+    assert_eq!(scenes.len(), 20);
+    for (name, scene, view) in scenes {
+        let verdict = check(&name, scene, &view);
+        assert!(verdict.covered > 500, "{name} shows too little");
+        total.pixels += verdict.pixels;
+        total.covered += verdict.covered;
+        total.undecided += verdict.undecided;
+    }
+    let share = total.undecided as f64 / total.pixels as f64;
+    println!(
+        "{} of {} pixels were undecided in the reference ({:.4} %), {} show a record",
+        total.undecided,
+        total.pixels,
+        100.0 * share,
+        total.covered
+    );
+    assert!(share < 5e-4);
+}
+
+#[test]
+fn threads_and_grids_do_not_change_a_byte() {
+    for (name, scene, view) in scenes().into_iter().step_by(3) {
+        let draw = |threads, cells| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let mut scene = scene.clone();
+            let picture = pool.install(|| render(&mut scene, &view, cells));
+            let depths: Vec<u32> = picture.depth.iter().map(|depth| depth.to_bits()).collect();
+            (picture.original_ids(&scene), depths)
+        };
+        let first = draw(1, 1);
+        for (threads, cells) in [(2, 1), (1, 7), (3, 40)] {
+            assert!(draw(threads, cells) == first, "{name}: {threads} threads, {cells} cells");
+        }
+    }
+}
+
+#[test]
+fn a_moved_scene_gives_the_same_picture() {
+    let mut random = Pcg64Mcg::seed_from_u64(5);
+    let scene = Scene::new(cloud(&mut random, 2000, 1.0, [0.01, 0.1]));
+    let (eye, target) = (DVec3::new(3.0, 1.0, 2.0), DVec3::ZERO);
+    // 1e7 and the eye are multiples of 2^-10, so that the view is exactly the same one.
+    let draw = |origin: DVec3| {
+        let view = View::look_at(origin + eye, origin + target, DVec3::Z).unwrap();
+        let mut scene = Scene { origin, ..scene.clone() };
+        let picture = render(&mut scene, &view.with_size(200, 200).unwrap(), 9);
+        (picture.original_ids(&scene), picture.depth)
+    };
+    assert!(draw(DVec3::ZERO) == draw(DVec3::new(1e7, -1e7, 1e7)));
+}
+
+#[test]
+fn coincident_spheres_show_the_lower_id() {
+    let mut scene = Scene::new(vec![Sphere::new([0.1, 0.2, 0.3], 0.5); 50]);
+    scene.records.reverse();
+    let eye = DVec3::new(0.0, 0.0, 4.0);
+    let view = View::look_at(eye, DVec3::ZERO, DVec3::Y).unwrap().with_size(64, 64).unwrap();
+    let picture = render(&mut scene, &view, 3);
+    let ids = picture.original_ids(&scene);
+    assert!(picture.covered_pixels() > 100);
+    assert!(ids.iter().all(|&id| id == 0 || id == puncta::NO_RECORD));
+}
+
+#[test]
+fn a_sphere_that_holds_the_camera_is_not_drawn() {
+    for radius in [1.0, 2.0, 1e3] {
+        let mut scene = Scene::new(vec![
+            Sphere::new([0.0, 0.0, 0.5], radius),
+            Sphere::new([0.0, 0.0, -2000.0], 100.0),
+        ]);
+        let view = View::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y).unwrap();
+        let view = view.with_size(64, 64).unwrap();
+        let picture = render(&mut scene, &view, 1);
+        let ids = picture.original_ids(&scene);
+        assert!(ids.contains(&1) && !ids.contains(&0), "radius {radius}");
+    }
+}
+
+#[test]
+fn records_without_a_picture_do_no_harm() {
+    let odd = [
+        Sphere::new([0.0, 0.0, 0.0], 0.0),
+        Sphere::new([0.3, 0.0, 0.0], 1e-38),
+        Sphere::new([1e38, 1e38, 1e38], 1e30),
+        Sphere::new([-3e38, 0.0, 0.0], 3e38),
+        Sphere::new([0.5, 0.0, 0.0], 0.2),
+    ];
+    let mut scene = Scene::new(odd.to_vec());
+    let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
+    let view = view.with_size(64, 64).unwrap();
+    let picture = render(&mut scene, &view, 2);
+    assert!(naive::compare(&scene, &view, &picture).is_ok());
+    assert!(picture.original_ids(&scene).contains(&4));
+}
+
+#[test]
+fn a_renderer_survives_records_that_no_grid_takes() {
+    use puncta::{Brick, Renderer, Visible, core::Aabb, core::Batch};
+    let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0];
+    let mut records = vec![Sphere::new([0.0; 3], 0.5)];
+    for value in bad {
+        records.push(Sphere::new([value, 0.0, 0.0], 0.5));
+        records.push(Sphere::new([0.0, 0.0, value], 0.5));
+        records.push(Sphere::new([0.0, 0.0, 0.0], value));
+    }
+    let scene = Scene::new(records);
+    let bounds = Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE };
+    let count = scene.records.len() as u32;
+    let brick = Brick { records: 0..count, bounds, radius_max: 1.0, density: 1.0 };
+    let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
+    for view in [view.clone(), view.with_orthographic(3.0).unwrap()] {
+        let view = view.with_size(64, 64).unwrap();
+        let bricks = [brick.clone()];
+        let visible = Visible::all(&bricks, scene.origin, &view);
+        let mut renderer = CpuRenderer::default();
+        Renderer::<Sphere>::begin(&mut renderer, &view).unwrap();
+        renderer.draw(&Batch { scene: &scene, bricks: &bricks, visible: &visible.bricks }).unwrap();
+        let picture = Renderer::<Sphere>::finish(&mut renderer).unwrap();
+        // Records 0 and, at depths -1 and at x = -1, those of the last round can be seen.
+        assert!(picture.visible_records().iter().all(|&id| id == 0 || id >= 10));
+        assert!(picture.depth.iter().all(|depth| *depth > 0.0));
+    }
+}
