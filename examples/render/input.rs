@@ -1,0 +1,125 @@
+//! The scene: from a file, a generator, or built in.
+
+use crate::{
+    options::{ColorBy, Options, Radii},
+    progress::Bar,
+};
+use anyhow::{Result, bail};
+use glam::DVec3;
+use puncta::{
+    Format, Loaded, ReadOptions, Scene, Source, Sphere,
+    io::{Scalars, elements, synthetic::Generator},
+};
+use std::{path::Path, sync::Arc};
+
+/// What is drawn without an input: laser ablation, 400,000 atoms.
+const BUILT_IN: &str = "ablation:n=400000";
+
+/// A scene and what is known about it.
+#[derive(Debug)]
+pub(crate) struct Input {
+    pub(crate) name: String,
+    pub(crate) format: String,
+    pub(crate) scene: Scene<Sphere>,
+    pub(crate) skipped: u64,
+    pub(crate) notices: Vec<String>,
+    /// The direction that is up.
+    pub(crate) up: DVec3,
+    /// The scalar to color by if there is nothing better.
+    pub(crate) scalar: Option<String>,
+}
+
+pub(crate) fn read(options: &Options) -> Result<Input> {
+    let name = options.input.as_deref().unwrap_or(BUILT_IN);
+    if Generator::is_spec(name) && !Path::new(name).exists() {
+        generate(name, options)
+    } else {
+        read_file(name, options)
+    }
+}
+
+fn generate(spec: &str, options: &Options) -> Result<Input> {
+    let mut generator: Generator = spec.parse()?;
+    if options.frame > 0 {
+        bail!("{spec}: there is no frame {}: a generator has 1, counted from 0", options.frame);
+    }
+    let up = generator.up();
+    let name = generator.to_string();
+    let total = generator.remaining().unwrap_or(0);
+    let bar = Bar::counting("making", total);
+    let mut scene = Scene::new(Vec::new());
+    scene.records.reserve_exact(usize::try_from(total)?);
+    const CHUNK: usize = 1 << 16;
+    loop {
+        let made = generator.append(&mut scene, CHUNK)?;
+        bar.set(scene.records.len() as u64);
+        if made < CHUNK {
+            break;
+        }
+    }
+    bar.finish();
+    set_radii(&mut scene, options)?;
+    let scalar = scene.attributes.scalars.first().map(|scalar| scalar.name.clone());
+    let format = "generator".to_owned();
+    Ok(Input { name, format, scene, skipped: 0, notices: vec![], up, scalar })
+}
+
+/// Gives the records of a generator the radii that were asked for.
+fn set_radii(scene: &mut Scene<Sphere>, options: &Options) -> Result<()> {
+    if options.radius.is_none() && options.radius_scale == 1.0 {
+        return Ok(());
+    }
+    for sphere in &mut scene.records {
+        let radius = options.radius.unwrap_or(f64::from(sphere.radius)) * options.radius_scale;
+        sphere.radius = radius as f32;
+        if !(sphere.radius.is_normal() && sphere.radius > 0.0) {
+            bail!("the radius must be positive and finite, not {radius}");
+        }
+    }
+    Ok(())
+}
+
+fn read_file(name: &str, options: &Options) -> Result<Input> {
+    let wanted = match &options.color_by {
+        ColorBy::Scalar(name) => vec![name.clone()],
+        _ => vec![],
+    };
+    let bar = Arc::new(Bar::bytes("reading"));
+    let told = bar.clone();
+    let mut reader = ReadOptions::default()
+        .frame(options.frame)
+        .radius_scale(options.radius_scale)
+        .radii(match options.radii {
+            Radii::Vdw => elements::Radii::VanDerWaals,
+            Radii::Covalent => elements::Radii::Covalent,
+        })
+        .strict(options.strict)
+        .on_progress(move |position, total| told.set_of(position, total));
+    if let Some(radius) = options.radius {
+        reader = reader.radius(radius);
+    }
+    let Loaded { scene, format, report } =
+        reader.clone().scalars(Scalars::Named(wanted.clone())).read(name)?;
+    bar.finish();
+    if wanted.iter().any(|wanted| scene.scalar(wanted).is_none()) {
+        let all = reader.scalars(Scalars::All).read(name)?.scene.attributes.scalars;
+        let names: Vec<&str> = all.iter().map(|scalar| scalar.name.as_str()).collect();
+        let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        bail!("{name}: there is no scalar {:?}; there are: {names}", wanted[0]);
+    }
+    let skipped = report.skipped.iter().map(|skipped| {
+        format!(
+            "{} records skipped: {}, first at {}: {}",
+            skipped.count, skipped.problem, skipped.first, skipped.value
+        )
+    });
+    Ok(Input {
+        name: name.to_owned(),
+        format: format.to_string(),
+        skipped: report.skipped_count(),
+        notices: skipped.chain(report.warnings.iter().cloned()).collect(),
+        up: if format == Format::Las { DVec3::Z } else { DVec3::Y },
+        scalar: None,
+        scene,
+    })
+}

@@ -1,0 +1,88 @@
+//! Draws a particle or point file, or a synthetic scene, exactly, on the CPU.
+//!
+//! ```text
+//! cargo run --release --example render -- INPUT [options]
+//! cargo run --release --example render -- --help
+//! ```
+
+#![allow(clippy::print_stdout, reason = "a tool talks to its user")]
+
+mod input;
+mod options;
+mod output;
+mod progress;
+mod statistics;
+mod view;
+
+use anyhow::{Context, Result};
+use clap::Parser;
+use options::Options;
+use puncta::{
+    CpuRenderer, Depth, FrustumCull, Grid, GridConfig, Picture, Pipeline, Renderer, Resolution,
+    Scene, Sphere, View,
+};
+use statistics::Statistics;
+
+fn main() {
+    if let Err(error) = run(&Options::parse()) {
+        eprintln!("error: {error:#}");
+        std::process::exit(1);
+    }
+}
+
+fn run(options: &Options) -> Result<()> {
+    if let Some(threads) = options.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
+        pool.build_global().context("cannot start the threads")?;
+    }
+    let mut statistics = Statistics::default();
+    let mut input = statistics.time("read", || input::read(options))?;
+    for notice in &input.notices {
+        eprintln!("note: {notice}");
+    }
+    let view = view::choose(options, &input)?;
+    let grid = statistics.time("sort", || sort(options, &mut input.scene))?;
+    let picture = draw(&input.scene, &grid, &view, "frame", &mut statistics)?;
+    statistics.describe(&input, &grid, &view, &picture);
+    output::write_numbers(options, &input.scene, &picture)?;
+    let image = output::image(options, &input, &grid, &view, picture, &mut statistics)?;
+    statistics.time("write", || output::write_image(options, &image))?;
+    statistics.finish(options)?;
+    println!("{statistics}");
+    println!("{}", output::place(options));
+    Ok(())
+}
+
+fn sort(options: &Options, scene: &mut Scene<Sphere>) -> Result<Grid> {
+    let spinner = progress::Bar::spinner("sorting");
+    let resolution =
+        options.grid.map_or_else(Resolution::default, |cells| Resolution::LongestSide(cells.get()));
+    let grid = Grid::sort_scene(scene, &GridConfig { resolution })?;
+    spinner.finish();
+    Ok(grid)
+}
+
+/// Draws the whole picture, with a progress bar, and notes the time it takes.
+fn draw(
+    scene: &Scene<Sphere>,
+    grid: &Grid,
+    view: &View,
+    step: &'static str,
+    statistics: &mut Statistics,
+) -> Result<Picture> {
+    let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
+    let budget = (scene.records.len() as u64 / 100).max(1 << 18);
+    let picture = statistics.time(step, || {
+        let steps = pipeline.progressive(scene, grid, view, budget)?;
+        let bar = progress::Bar::counting("drawing", steps.step().left.records);
+        for step in steps {
+            bar.set(step?.drawn.records);
+        }
+        bar.finish();
+        anyhow::Ok(pipeline.finish::<Sphere>()?)
+    })?;
+    if step == "frame" {
+        statistics.drawn = Renderer::<Sphere>::progress(pipeline.renderer());
+    }
+    Ok(picture)
+}

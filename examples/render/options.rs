@@ -1,0 +1,205 @@
+//! The command line.
+
+use clap::{Parser, ValueEnum};
+use glam::DVec3;
+use puncta::{Background, ColorMap};
+use std::{num::NonZero, path::PathBuf};
+
+/// Draws a particle or point file, or a synthetic scene, exactly, on the CPU.
+#[derive(Debug, Parser)]
+#[command(name = "render", version, after_help = after_help())]
+pub(crate) struct Options {
+    /// A file (XYZ, extended XYZ, LAMMPS dump, PDB, MMPLD, PLY, LAS, LAZ, legacy VTK; gzip is fine)
+    /// or a generator such as cube:n=10000000,r=0.01,seed=7; a built-in scene by default
+    pub(crate) input: Option<String>,
+
+    /// Columns and rows of the picture
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size)]
+    pub(crate) size: (u32, u32),
+
+    /// The place of the camera, in the coordinates of the file; fits the scene by default
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) eye: Option<DVec3>,
+
+    /// The point to look at; the middle of the scene by default
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) target: Option<DVec3>,
+
+    /// The direction that is up in the picture; z or y by default, as is usual for the format
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) up: Option<DVec3>,
+
+    /// The vertical angle of view
+    #[arg(long, value_name = "DEG", default_value_t = 45.0)]
+    pub(crate) fov: f64,
+
+    /// Parallel rays, and the height of the picture in the units of the file
+    #[arg(long, value_name = "HEIGHT", conflicts_with = "fov")]
+    pub(crate) ortho: Option<f64>,
+
+    /// The view depth before which nothing is seen; a millionth of the distance by default
+    #[arg(long, value_name = "DEPTH")]
+    pub(crate) near: Option<f64>,
+
+    /// One radius for all particles, whatever the file says
+    #[arg(long, value_name = "R")]
+    pub(crate) radius: Option<f64>,
+
+    /// A factor for all radii
+    #[arg(long, value_name = "S", default_value_t = 1.0)]
+    pub(crate) radius_scale: f64,
+
+    /// Which radii to take for atoms
+    #[arg(long, value_enum, default_value_t = Radii::Vdw)]
+    pub(crate) radii: Radii,
+
+    /// Where colors come from: auto, element, rgb, height, uniform or scalar:NAME
+    #[arg(long, value_name = "WHAT", default_value = "auto", value_parser = color_by)]
+    pub(crate) color_by: ColorBy,
+
+    /// The color map for heights and scalars; _r after a name reverses it
+    #[arg(long, value_name = "NAME", default_value = "viridis")]
+    pub(crate) colormap: String,
+
+    /// The values at the ends of the color map; nearly the range of the data by default
+    #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
+    pub(crate) range: Option<[f64; 2]>,
+
+    /// Draw a bar that explains the color map
+    #[arg(long)]
+    pub(crate) legend: bool,
+
+    /// A color (#rrggbb), two from top to bottom (#rrggbb,#rrggbb), black, white or transparent
+    #[arg(long, value_name = "COLOR", value_parser = background)]
+    pub(crate) background: Option<Background>,
+
+    /// How many samples to average along each side of a pixel
+    #[arg(long, value_name = "K", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub(crate) supersample: u32,
+
+    /// Which frame of the file, counted from 0
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    pub(crate) frame: u64,
+
+    /// Records that cannot be used are errors instead of being skipped
+    #[arg(long)]
+    pub(crate) strict: bool,
+
+    /// Grid cells along the longest side; by default some 512 records share a cell
+    #[arg(long, value_name = "N")]
+    pub(crate) grid: Option<NonZero<u32>>,
+
+    /// Threads to draw with; all cores by default
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZero<usize>>,
+
+    /// The image to write
+    #[arg(long, value_name = "FILE.png", default_value = "puncta.png")]
+    pub(crate) out: PathBuf,
+
+    /// Write view depths as an array: f32, H x W, +inf where nothing is seen
+    #[arg(long, value_name = "FILE.npy")]
+    pub(crate) depth: Option<PathBuf>,
+
+    /// Write the index in the file of the record at each pixel: u32, H x W, 4294967295 for none
+    #[arg(long, value_name = "FILE.npy")]
+    pub(crate) ids: Option<PathBuf>,
+
+    /// Write counts, bytes and seconds
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+/// Which radii to take for atoms.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Radii {
+    /// Half the distance of atoms that do not bond: space filling
+    Vdw,
+    /// Half the distance of bonded atoms
+    Covalent,
+}
+
+/// Where colors come from.
+#[derive(Clone, Debug)]
+pub(crate) enum ColorBy {
+    /// The first of elements, colors, a generator's scalar and height that there is.
+    Auto,
+    Element,
+    Rgb,
+    Height,
+    Uniform,
+    Scalar(String),
+}
+
+/// The generators and color maps, for the end of the help.
+fn after_help() -> String {
+    let maps = ColorMap::names().collect::<Vec<_>>().join(", ");
+    format!("Color maps: {maps}.")
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let side =
+        |side: &str| side.trim().parse().map_err(|_| format!("{side:?} is no number of pixels"));
+    let (width, height) = text.split_once(['x', 'X']).ok_or("write it as 1024x768")?;
+    Ok((side(width)?, side(height)?))
+}
+
+fn point(text: &str) -> Result<DVec3, String> {
+    numbers(text).map(DVec3::from)
+}
+
+fn range(text: &str) -> Result<[f64; 2], String> {
+    let range: [f64; 2] = numbers(text)?;
+    if range[0] < range[1] {
+        Ok(range)
+    } else {
+        Err("the first number must be the lower one".into())
+    }
+}
+
+/// `N` finite numbers with commas between them.
+fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let number = |part: &str| match part.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(x),
+        _ => Err(format!("{part:?} is no finite number")),
+    };
+    let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    let count = numbers.len();
+    numbers.try_into().map_err(|_| format!("{N} numbers with commas between them, not {count}"))
+}
+
+fn color_by(text: &str) -> Result<ColorBy, String> {
+    Ok(match text {
+        "auto" => ColorBy::Auto,
+        "element" => ColorBy::Element,
+        "rgb" => ColorBy::Rgb,
+        "height" => ColorBy::Height,
+        "uniform" => ColorBy::Uniform,
+        _ => match text.strip_prefix("scalar:") {
+            Some(name) if !name.is_empty() => ColorBy::Scalar(name.to_owned()),
+            _ => return Err("auto, element, rgb, height, uniform or scalar:NAME".into()),
+        },
+    })
+}
+
+fn background(text: &str) -> Result<Background, String> {
+    match text {
+        "transparent" => Ok(Background::Transparent),
+        _ => match text.split_once(',') {
+            Some((top, bottom)) => Ok(Background::Gradient(color(top)?, color(bottom)?)),
+            None => color(text).map(Background::Solid),
+        },
+    }
+}
+
+fn color(text: &str) -> Result<[u8; 3], String> {
+    let hex = match text.trim() {
+        "black" => "000000",
+        "white" => "ffffff",
+        other => other.trim_start_matches('#'),
+    };
+    let is_color = hex.len() == 6 && hex.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let code = u32::from_str_radix(hex, 16).ok().filter(|_| is_color);
+    let [_, r, g, b] = code.ok_or(format!("{text:?} is no color like #20a0ff"))?.to_be_bytes();
+    Ok([r, g, b])
+}

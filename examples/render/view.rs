@@ -1,0 +1,57 @@
+//! The view: what the options say, and a good one where they say nothing.
+
+use crate::{input::Input, options::Options};
+use anyhow::Result;
+use glam::DVec3;
+use puncta::{Bounds, View};
+
+/// The share of records on either side of an axis that a fitted view may leave out, if they are
+/// strays.
+const STRAYS: f64 = 0.001;
+
+/// From how many times the size of the rest on records count as strays.
+const STRAY_FACTOR: f64 = 3.0;
+
+pub(crate) fn choose(options: &Options, input: &Input) -> Result<View> {
+    let bounds = bounds(input);
+    let up = options.up.unwrap_or(input.up);
+    let target = options.target.unwrap_or_else(|| bounds.center());
+    let eye = options.eye.unwrap_or_else(|| target + aside(up) * bounds.extent().length().max(1.0));
+    let (width, height) = options.size;
+    let view = View::look_at(eye, target, up)?.with_size(width, height)?;
+    let mut view = match options.ortho {
+        Some(height) => view.with_orthographic(height)?,
+        None => view.with_perspective(options.fov.to_radians())?,
+    };
+    if options.eye.is_none() {
+        let fitted = view.clone().fitted(&bounds);
+        // With a target of one's own only the distance is fitted.
+        let eye = target + (fitted.eye() - bounds.center());
+        let moved = View::look_at(eye, target, up)?.with_size(width, height)?;
+        view = match options.ortho {
+            Some(height) => moved.with_orthographic(height)?,
+            None => moved.with_perspective(options.fov.to_radians())?,
+        };
+    }
+    match options.near {
+        Some(near) => Ok(view.with_near(near)?),
+        None => Ok(view),
+    }
+}
+
+/// The box to look at: all records, unless strays make it many times as large as the rest.
+fn bounds(input: &Input) -> Bounds {
+    let all = input.scene.bounds();
+    let inner = input.scene.inner_bounds(STRAYS);
+    let is_blown_up = all.extent().max_element() > STRAY_FACTOR * inner.extent().max_element();
+    if is_blown_up && inner.extent().max_element() > 0.0 { inner } else { all }
+}
+
+/// A direction from the front, a little from the right and from above.
+fn aside(up: DVec3) -> DVec3 {
+    let up = up.normalize_or(DVec3::Y);
+    let front = if up.z.abs() > 0.9 { DVec3::NEG_Y } else { DVec3::Z };
+    let right = up.cross(front).normalize_or(DVec3::X);
+    let front = right.cross(up);
+    (front + right * 0.45 + up * 0.4).normalize_or(DVec3::Z)
+}
