@@ -447,3 +447,26 @@ mod written {
         assert_eq!(text, b"0\nProperties=pos:R:3:radius:R:1\n");
     }
 }
+
+#[test]
+fn the_glass_is_read() {
+    let Some(data) = std::env::var_os("PUNCTA_DATA") else {
+        println!("skipped: PUNCTA_DATA is not set");
+        return;
+    };
+    let path = std::path::Path::new(&data).join("ges2.xyz");
+    let first = ReadOptions::default().read(&path).unwrap();
+    assert_eq!(first.scene.records.len(), 258);
+    assert_eq!(first.report, Default::default());
+    let elements = first.scene.attributes.elements.unwrap();
+    assert_eq!((elements[0], elements[257]), (32, 16));
+    let frames = std::fs::read_to_string(&path).unwrap().lines().count() as u64 / 260;
+    let last = ReadOptions::default().frame(frames - 1).read(&path).unwrap();
+    assert_eq!(last.scene.records.len(), 258);
+    let error = ReadOptions::default().frame(frames).read(&path).unwrap_err().to_string();
+    assert!(
+        error.ends_with(&format!(
+            "there is no frame {frames}: the file has {frames}, counted from 0"
+        ))
+    );
+}
