@@ -223,6 +223,16 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// Gives a radius to the rows that came without one; whether there are any.
+    pub(crate) fn fill_radius(&mut self, radius: f64) -> bool {
+        let smallest = f64::from(f32::MIN_POSITIVE);
+        let radius = (radius * self.options.radius_scale).clamp(smallest, f64::from(f32::MAX));
+        let radius = to_f32(radius);
+        let missing = self.records.iter_mut().filter(|sphere| sphere.radius.is_nan());
+        missing.for_each(|sphere| sphere.radius = radius);
+        std::mem::take(&mut self.radius_missing)
+    }
+
     /// The scene of all rows, and what was found on the way.
     pub(crate) fn finish(mut self) -> Result<(Scene, Report), Fault> {
         if self.records.is_empty() {

@@ -15,6 +15,7 @@ file, the place and the value. Records that cannot be used are skipped, counted 
 number in a file makes a reader allocate more than the file itself justifies.
 */
 
+mod atoms;
 mod builder;
 pub mod elements;
 mod error;
@@ -30,6 +31,8 @@ mod ply;
 pub mod png;
 mod radius;
 pub mod synthetic;
+mod table;
+mod text;
 mod vtk;
 mod write;
 mod xyz;

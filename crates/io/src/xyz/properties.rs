@@ -1,0 +1,263 @@
+//! The comment of extended XYZ: pairs of keys and values, and the columns among them.
+
+use crate::{
+    ReadOptions,
+    error::{Fault, Place, quote},
+    table::{Role, Table},
+    text::{number, whole},
+};
+
+/// The table that the comment tells of, if any. A lattice is checked on the way.
+pub(super) fn table(
+    comment: &[u8],
+    place: Place,
+    options: &ReadOptions,
+) -> Result<Option<Table>, Fault> {
+    let (mut rest, mut found) = (comment, None);
+    while let Some((key, value)) = pair(&mut rest) {
+        let Some(value) = value else { continue };
+        if key.eq_ignore_ascii_case(b"lattice") {
+            check_lattice(value, place)?;
+        } else if key.eq_ignore_ascii_case(b"properties") && found.is_none() {
+            found = Some(read(value, place, options)?);
+        }
+    }
+    Ok(found)
+}
+
+/// Whether a property of this name is something else than a scalar.
+pub(super) fn has_role(name: &str) -> bool {
+    Meaning::of(name) != Meaning::Scalar
+}
+
+/// What a property is by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Meaning {
+    Position,
+    Element,
+    Radius,
+    Color,
+    Scalar,
+}
+
+impl Meaning {
+    fn of(name: &str) -> Self {
+        match name.to_ascii_lowercase().as_str() {
+            _ if name == "Z" => Self::Element,
+            "pos" | "position" | "positions" => Self::Position,
+            "species" | "element" | "elements" | "symbol" | "symbols" | "numbers"
+            | "atomic_number" | "atomic_numbers" => Self::Element,
+            "radius" | "radii" => Self::Radius,
+            "color" | "colour" | "colors" | "colours" => Self::Color,
+            _ => Self::Scalar,
+        }
+    }
+}
+
+/// Takes the next key off `rest`, and its value if it has one.
+fn pair<'a>(rest: &mut &'a [u8]) -> Option<(&'a [u8], Option<&'a [u8]>)> {
+    *rest = rest.trim_ascii_start();
+    if rest.is_empty() {
+        return None;
+    }
+    let key = word(rest, |byte| byte == b'=' || byte.is_ascii_whitespace());
+    let Some(value) = rest.trim_ascii_start().strip_prefix(b"=") else {
+        return Some((key, None));
+    };
+    *rest = value.trim_ascii_start();
+    Some((key, Some(word(rest, |byte| byte.is_ascii_whitespace()))))
+}
+
+/// Takes a word off `rest`: what is in quotes or brackets, or all up to where `ends` holds.
+fn word<'a>(rest: &mut &'a [u8], ends: impl Fn(u8) -> bool) -> &'a [u8] {
+    let close = match rest.first() {
+        Some(quote @ (b'"' | b'\'')) => Some(*quote),
+        Some(b'{') => Some(b'}'),
+        _ => None,
+    };
+    if let Some(close) = close {
+        let inner = rest.get(1..).unwrap_or_default();
+        let mut escaped = false;
+        let end = inner.iter().position(|&byte| {
+            let closes = byte == close && !escaped;
+            escaped = byte == b'\\' && !escaped;
+            closes
+        });
+        let (word, after) = inner.split_at(end.unwrap_or(inner.len()));
+        *rest = after.get(1..).unwrap_or_default();
+        return word;
+    }
+    let mut depth = 0_u32;
+    let end = rest.iter().position(|&byte| {
+        match byte {
+            b'[' => depth = depth.saturating_add(1),
+            b']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        depth == 0 && ends(byte)
+    });
+    let (word, after) = rest.split_at(end.unwrap_or(rest.len()));
+    *rest = after;
+    word
+}
+
+/// Checks that a lattice is three vectors.
+fn check_lattice(value: &[u8], place: Place) -> Result<(), Fault> {
+    let separates = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b',' | b'[' | b']');
+    let mut count = 0;
+    for text in value.split(separates).filter(|text| !text.is_empty()) {
+        if !number(text).is_some_and(f64::is_finite) {
+            return Err(Fault::invalid(place, "Lattice must have nine numbers", quote(text)));
+        }
+        count += 1;
+    }
+    if count == 9 {
+        return Ok(());
+    }
+    Err(Fault::invalid(place, "Lattice must have nine numbers", count))
+}
+
+/// The table that the value of `Properties` tells of.
+fn read(value: &[u8], place: Place, options: &ReadOptions) -> Result<Table, Fault> {
+    let mut table = Table::default();
+    let mut fields = value.split(|&byte| byte == b':');
+    let mut columns: u64 = 0;
+    while let Some(name) = fields.next() {
+        let (Some(kind), Some(count)) = (fields.next(), fields.next()) else {
+            let what = "Properties must be a name, a type and a number of columns in turn";
+            return Err(Fault::invalid(place, what, quote(value)));
+        };
+        let name = String::from_utf8_lossy(name.trim_ascii());
+        if !matches!(kind, b"S" | b"R" | b"I" | b"L") {
+            let what = format!("the type of the property {name} must be S, R, I or L");
+            return Err(Fault::invalid(place, what, quote(kind)));
+        }
+        let Some(count) = whole(count.trim_ascii()).filter(|&count| count > 0) else {
+            let what = format!("the number of columns of the property {name} must be 1 or more");
+            return Err(Fault::invalid(place, what, quote(count)));
+        };
+        columns = columns.saturating_add(count);
+        Table::check(columns, place)?;
+        add(&mut table, &name, (kind, count), options);
+    }
+    if table.has(Role::Axis(0)) {
+        return Ok(table);
+    }
+    Err(Fault::invalid(place, "Properties must have pos:R:3", quote(value)))
+}
+
+/// Adds the columns of a property.
+fn add(table: &mut Table, name: &str, (kind, count): (&[u8], u64), options: &ReadOptions) {
+    let is_number = matches!(kind, b"R" | b"I");
+    let is_new = |role| !table.has(role);
+    match (Meaning::of(name), count) {
+        (Meaning::Position, 3) if is_number && is_new(Role::Axis(0)) => {
+            (0..3).for_each(|axis| table.push(Role::Axis(axis)));
+        }
+        (Meaning::Element, 1) if matches!(kind, b"S" | b"I") && is_new(Role::Element) => {
+            table.push(Role::Element);
+        }
+        (Meaning::Radius, 1) if is_number && is_new(Role::Radius) => table.push(Role::Radius),
+        (Meaning::Color, 3 | 4) if is_number && is_new(Role::Color(0)) => {
+            let role = if kind == b"R" { Role::Color } else { Role::ColorByte };
+            (0..4).zip(0..count).for_each(|(channel, _)| table.push(role(channel)));
+        }
+        _ if kind == b"S" => (0..count).for_each(|_| table.push(Role::Ignored)),
+        _ => {
+            let role = if kind == b"L" { Role::Logical } else { Role::Scalar };
+            for index in 0..count {
+                let name = match (count, index) {
+                    (1, _) => name.to_owned(),
+                    (3, 0) => format!("{name}_x"),
+                    (3, 1) => format!("{name}_y"),
+                    (3, _) => format!("{name}_z"),
+                    _ => format!("{name}_{index}"),
+                };
+                table.push_scalar(name, options, role);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn roles(comment: &str) -> Result<(Vec<Role>, Vec<String>), String> {
+        let table = table(comment.as_bytes(), Place::Line(2), &ReadOptions::default());
+        let table = table.map_err(|fault| fault.in_file("a.xyz").to_string())?;
+        Ok(table.map(|table| (table.roles, table.names)).unwrap_or_default())
+    }
+
+    #[test]
+    fn columns_have_roles_in_any_order() {
+        let text = "Properties=force:R:3:Z:I:1:tag:S:2:pos:R:3:ok:L:1:colour:R:3:q:R:2:radius:R:1";
+        let (roles, names) = roles(text).unwrap();
+        use Role::{Axis, Color, Element, Ignored, Logical, Radius, Scalar};
+        let expected = [
+            [Scalar(0), Scalar(1), Scalar(2), Element, Ignored, Ignored, Axis(0)],
+            [Axis(1), Axis(2), Logical(3), Color(0), Color(1), Color(2), Scalar(4)],
+        ];
+        assert_eq!(roles[..14], expected.concat());
+        assert_eq!(roles[14..], [Scalar(5), Radius]);
+        assert_eq!(names, ["force_x", "force_y", "force_z", "ok", "q_0", "q_1"]);
+    }
+
+    #[test]
+    fn values_may_be_quoted() {
+        for comment in [
+            r#"Lattice="1 0 0 0 1 0 0 0 1" Properties="pos:R:3" pbc="T T T""#,
+            "title='a \\' Properties=x' Properties='pos:R:3'",
+            "Lattice=[[1, 0, 0], [0, 1, 0], [0, 0, 1]] Properties = pos:R:3 energy=-1.5",
+            "flag \"a key\"=1 properties=pos:I:3",
+            "cell={1 2 3} PROPERTIES=pos:R:3",
+        ] {
+            assert_eq!(roles(comment).unwrap().0.len(), 3, "{comment}");
+        }
+        for comment in [
+            "",
+            "water",
+            "a=b",
+            "Properties",
+            "Lattice of iron",
+            "=",
+            "\"",
+            "[",
+            "x=\"Properties=pos:R:3",
+        ] {
+            assert_eq!(roles(comment), Ok(Default::default()), "{comment}");
+        }
+    }
+
+    #[test]
+    fn wrong_headers_are_told() {
+        let lattice = "Lattice must have nine numbers, not";
+        let columns = "the number of columns of the property pos must be 1 or more, not";
+        for (comment, error) in [
+            ("Lattice=\"1 2 3\"", format!("{lattice} 3")),
+            ("Lattice=\"1 0 0 0 1 0 0 0 b\"", format!("{lattice} \"b\"")),
+            ("Lattice=\"1 0 0 0 1 0 0 0 inf\"", format!("{lattice} \"inf\"")),
+            ("Lattice=", format!("{lattice} 0")),
+            ("Properties=pos:R:0", format!("{columns} \"0\"")),
+            ("Properties=pos:R:-3", format!("{columns} \"-3\"")),
+            ("Properties=pos:R:3:q:R:9999", "there must be at most 4096 columns, not 10002".into()),
+            (
+                "Properties=pos:R:3:q:R:18446744073709551615",
+                "there must be at most 4096 columns, not 18446744073709551615".into(),
+            ),
+            (
+                "Properties=pos:F:3",
+                "the type of the property pos must be S, R, I or L, not \"F\"".into(),
+            ),
+            (
+                "Properties=pos:R",
+                "Properties must be a name, a type and a number of columns in turn, not \"pos:R\""
+                    .into(),
+            ),
+            ("Properties=pos:R:2", "Properties must have pos:R:3, not \"pos:R:2\"".into()),
+            ("Properties=a:R:1", "Properties must have pos:R:3, not \"a:R:1\"".into()),
+        ] {
+            assert_eq!(roles(comment), Err(format!("a.xyz, line 2: {error}")), "{comment}");
+        }
+    }
+}

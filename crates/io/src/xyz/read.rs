@@ -1,0 +1,317 @@
+//! The reader: finds the frame, and whether its second line is a comment.
+
+use super::properties;
+use crate::{
+    ReadOptions,
+    atoms::Atoms,
+    builder::Report,
+    error::{ErrorKind, Fault, Place, Problem, quote},
+    input::Input,
+    table::{Role, Table, Values},
+    text::{self, Lines, columns, number, whole},
+};
+use puncta_core::Scene;
+
+/// Reads a frame.
+pub(crate) fn read(input: &mut Input<'_>, options: &ReadOptions) -> Result<(Scene, Report), Fault> {
+    let mut lines = Lines::new(input);
+    if !advance_to_data(&mut lines)? {
+        return Err(ErrorKind::NoSuchFrame { frame: options.frame, frames: 0 }.into());
+    }
+    if columns(lines.text()).count() == 1 {
+        lines.hold();
+        let count = seek(&mut lines, options.frame)?;
+        return read_frame(&mut lines, options, count);
+    }
+    if options.frame > 0 {
+        return Err(ErrorKind::NoSuchFrame { frame: options.frame, frames: 1 }.into());
+    }
+    read_points(&mut lines, options)
+}
+
+/// Where the coordinates of a row are, without a header that tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shape {
+    /// Behind a name.
+    Named,
+    /// At the start.
+    Bare,
+}
+
+impl Shape {
+    /// The shape of a row of a frame.
+    fn in_frame(line: &[u8]) -> Option<Self> {
+        let first = columns(line).next()?;
+        let is_name = number(first).is_none() || whole(first).is_some();
+        match (is_name, Self::Named.fits(line)) {
+            (true, true) => Some(Self::Named),
+            _ => Self::Bare.fits(line).then_some(Self::Bare),
+        }
+    }
+
+    /// The shape of a row of a file without frames.
+    fn of_point(line: &[u8]) -> Option<Self> {
+        [Self::Bare, Self::Named].into_iter().find(|shape| shape.fits(line))
+    }
+
+    /// Whether there are numbers where the coordinates should be.
+    fn fits(self, line: &[u8]) -> bool {
+        columns(line).skip(self.start()).map(number).take(3).flatten().count() == 3
+    }
+
+    /// The index of the first coordinate.
+    fn start(self) -> usize {
+        usize::from(self == Self::Named)
+    }
+
+    /// The table of rows like this one.
+    fn table(self, row: &[u8], place: Place, options: &ReadOptions) -> Result<Table, Fault> {
+        Table::check(columns(row).count() as u64, place)?;
+        let mut table = Table::default();
+        for (column, text) in columns(row).enumerate() {
+            match column.checked_sub(self.start()) {
+                None => table.push(Role::Element),
+                Some(axis @ 0..3) => table.push(Role::Axis(axis)),
+                Some(_) if number(text).is_some() => {
+                    table.push_scalar(format!("column_{}", column + 1), options, Role::Scalar);
+                }
+                Some(_) => table.push(Role::Ignored),
+            }
+        }
+        Ok(table)
+    }
+}
+
+/// Goes to the first line that is neither blank nor a comment.
+fn advance_to_data(lines: &mut Lines<'_, '_>) -> Result<bool, Fault> {
+    while lines.advance_to_text()? {
+        if !is_comment(lines.text()) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+fn is_comment(line: &[u8]) -> bool {
+    let line = line.trim_ascii_start();
+    line.starts_with(b"#") || line.starts_with(b"//")
+}
+
+/// Whether a line can only follow after a frame: it is blank, or a number of atoms.
+fn ends_frame(line: &[u8]) -> bool {
+    let line = line.trim_ascii();
+    line.is_empty() || whole(line).is_some()
+}
+
+/// Whether two lines may be rows of one frame.
+fn are_alike(a: &[u8], b: &[u8]) -> bool {
+    Shape::in_frame(a) == Shape::in_frame(b) && columns(a).count() == columns(b).count()
+}
+
+/// Goes to the frame of this index, and over its number of atoms, which is returned.
+fn seek(lines: &mut Lines<'_, '_>, frame: u64) -> Result<u64, Fault> {
+    for frames in 0.. {
+        if !lines.advance_to_text()? {
+            return Err(ErrorKind::NoSuchFrame { frame, frames }.into());
+        }
+        let count = text::count(lines.text(), lines.place(), "the number of atoms")?;
+        if frames == frame {
+            return Ok(count);
+        }
+        pass(lines, count)?;
+    }
+    Ok(0)
+}
+
+/// Passes over the rest of a frame of `count` atoms.
+fn pass(lines: &mut Lines<'_, '_>, count: u64) -> Result<(), Fault> {
+    let second = second_line(lines, count)?;
+    for found in u64::from(second.is_candidate)..count {
+        if !lines.advance()? {
+            return Err(text::too_few(lines.place(), count, found));
+        }
+    }
+    if second.is_candidate && lines.advance()? && ends_frame(lines.text()) {
+        lines.hold();
+    }
+    Ok(())
+}
+
+/// The second line of a frame.
+struct Second {
+    line: Vec<u8>,
+    place: Place,
+    /// Whether it may be the first atom.
+    is_candidate: bool,
+}
+
+/// Reads the second line of a frame of `count` atoms.
+fn second_line(lines: &mut Lines<'_, '_>, count: u64) -> Result<Second, Fault> {
+    if !lines.advance()? && count > 0 {
+        return Err(text::too_few(lines.place(), count, 0));
+    }
+    let (line, place) = (lines.text().to_vec(), lines.place());
+    let mut is_candidate = count > 0 && Shape::in_frame(&line).is_some();
+    if is_candidate {
+        if lines.advance()? {
+            let single = count == 1 && ends_frame(lines.text());
+            is_candidate = single || are_alike(&line, lines.text());
+            lines.hold();
+        } else if count > 1 {
+            return Err(text::too_few(lines.place(), count, 1));
+        }
+    }
+    Ok(Second { line, place, is_candidate })
+}
+
+/// Reads the rest of a frame of `count` atoms.
+fn read_frame(
+    lines: &mut Lines<'_, '_>,
+    options: &ReadOptions,
+    count: u64,
+) -> Result<(Scene, Report), Fault> {
+    let mut second = second_line(lines, count)?;
+    let mut rows = count;
+    let mut first_bad = None;
+    let table = match properties::table(&second.line, second.place, options)? {
+        Some(table) => {
+            second.is_candidate = false;
+            table
+        }
+        None => match Shape::in_frame(&second.line).filter(|_| second.is_candidate) {
+            Some(shape) => shape.table(&second.line, second.place, options)?,
+            None => first_table(lines, options, count, &mut first_bad)?,
+        },
+    };
+    let mut rest = Rows::new(table, options);
+    if lines.can_hold(count, rest.table.roles.len()) {
+        rest.atoms.reserve(count)?;
+    }
+    if let Some(bad) = first_bad {
+        rows -= bad.count;
+        for _ in 0..bad.count {
+            rest.atoms.skip(Problem::Columns, bad.place, || bad.text.clone())?;
+        }
+    }
+    rows -= u64::from(second.is_candidate);
+    for found in count - rows..count {
+        if !lines.advance()? {
+            return Err(text::too_few(lines.place(), count, found));
+        }
+        rest.push(lines)?;
+    }
+    if !second.is_candidate {
+        warn_of_more(lines, &mut rest.atoms)?;
+        return rest.finish();
+    }
+    if lines.advance()? && !ends_frame(lines.text()) {
+        rest.push(lines)?;
+        warn_of_more(lines, &mut rest.atoms)?;
+        return rest.finish();
+    }
+    rest.atoms.warn("the frame has no comment: its second line was taken for an atom");
+    rest.atoms.push_text(&second.line, second.place, &rest.table, &mut rest.values)?;
+    let (mut scene, report) = rest.finish()?;
+    put_last_first(&mut scene, count);
+    Ok((scene, report))
+}
+
+/// Lines at the start of a frame that do not tell what its columns are.
+struct FirstBad {
+    count: u64,
+    place: Place,
+    text: String,
+}
+
+/// The table that the first usable row tells of; that row comes next.
+fn first_table(
+    lines: &mut Lines<'_, '_>,
+    options: &ReadOptions,
+    count: u64,
+    first_bad: &mut Option<FirstBad>,
+) -> Result<Table, Fault> {
+    for found in 0..count {
+        if !lines.advance()? {
+            return Err(text::too_few(lines.place(), count, found));
+        }
+        if let Some(shape) = Shape::in_frame(lines.text()) {
+            lines.hold();
+            return shape.table(lines.text(), lines.place(), options);
+        }
+        let (place, text) = (lines.place(), lines.text());
+        let bad = || FirstBad { count: 0, place, text: quote(text) };
+        first_bad.get_or_insert_with(bad).count += 1;
+    }
+    Ok(Table::default())
+}
+
+/// Warns if what follows a frame is no other frame.
+fn warn_of_more(lines: &mut Lines<'_, '_>, atoms: &mut Atoms<'_>) -> Result<(), Fault> {
+    if lines.advance()? && !ends_frame(lines.text()) {
+        let (place, text) = (lines.place(), quote(lines.text()));
+        atoms.warn(format!("{place}, after the frame, was not read: it starts no frame, {text}"));
+    }
+    Ok(())
+}
+
+/// Reads a file without frames, whose first row is the line that was read last.
+fn read_points(lines: &mut Lines<'_, '_>, options: &ReadOptions) -> Result<(Scene, Report), Fault> {
+    let (line, place) = (lines.text(), lines.place());
+    let Some(shape) = Shape::of_point(line) else {
+        let what = "the first line must be the number of atoms, or a row of coordinates";
+        return Err(Fault::invalid(place, what, quote(line)));
+    };
+    let mut rows = Rows::new(shape.table(line, place, options)?, options);
+    rows.push(lines)?;
+    while advance_to_data(lines)? {
+        rows.push(lines)?;
+    }
+    rows.finish()
+}
+
+/// The rows of a frame, on their way into a scene.
+struct Rows<'o> {
+    table: Table,
+    values: Values,
+    atoms: Atoms<'o>,
+}
+
+impl<'o> Rows<'o> {
+    fn new(table: Table, options: &'o ReadOptions) -> Self {
+        let (values, atoms) = (table.values(), Atoms::new(options, &table.columns()));
+        Self { table, values, atoms }
+    }
+
+    /// Adds the line that was read last.
+    fn push(&mut self, lines: &Lines<'_, '_>) -> Result<(), Fault> {
+        self.atoms.push_text(lines.text(), lines.place(), &self.table, &mut self.values)
+    }
+
+    fn finish(mut self) -> Result<(Scene, Report), Fault> {
+        if self.values.clamped {
+            self.atoms.warn("colors outside of their range were moved into it");
+        }
+        self.atoms.finish()
+    }
+}
+
+/// Moves the row that was added last, of `count` rows, to the start, unless it was skipped.
+fn put_last_first(scene: &mut Scene, count: u64) {
+    let attributes = &mut scene.attributes;
+    if let Some(ids) = &mut attributes.ids {
+        for id in ids.iter_mut() {
+            *id = if u64::from(*id) + 1 == count { 0 } else { *id + 1 };
+        }
+        if ids.last() != Some(&0) {
+            return;
+        }
+        ids.rotate_right(1);
+    }
+    scene.records.rotate_right(1);
+    if let Some(elements) = &mut attributes.elements {
+        elements.rotate_right(1);
+    }
+    for scalar in &mut attributes.scalars {
+        scalar.values.rotate_right(1);
+    }
+}

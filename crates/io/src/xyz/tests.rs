@@ -1,0 +1,472 @@
+//! Tests of the reader and the writer together.
+
+use crate::{Error, Loaded, Problem, ReadOptions, Scalars, elements::Radii};
+use glam::DVec3;
+
+fn load(options: &ReadOptions, text: &str) -> Result<Loaded, Error> {
+    options.read_bytes("a.xyz", text.as_bytes())
+}
+
+fn read(text: &str) -> Loaded {
+    load(&ReadOptions::default(), text).unwrap()
+}
+
+fn fail(text: &str) -> String {
+    load(&ReadOptions::default(), text).unwrap_err().to_string()
+}
+
+fn xs(loaded: &Loaded) -> Vec<f64> {
+    (0..loaded.scene.records.len()).map(|index| loaded.scene.position(index).x).collect()
+}
+
+fn radii(loaded: &Loaded) -> Vec<f32> {
+    loaded.scene.records.iter().map(|record| record.radius).collect()
+}
+
+fn scalar(loaded: &Loaded, name: &str) -> Vec<f32> {
+    loaded.scene.scalar(name).unwrap().values.clone()
+}
+
+const TWO: &str = "2\nfirst\nO 0 0 0\nH 1 0 0\n1\nsecond\nC 5 0 0\n";
+
+mod plain {
+    use super::*;
+
+    #[test]
+    fn atoms_have_elements_and_their_radii() {
+        let loaded = read("4\n\n  CA  0 0 0\r\n13C\t1 -2.5e0 3\nh2 2 0 0\n92 3 0 0");
+        assert_eq!(loaded.scene.attributes.elements, Some(vec![20, 6, 1, 92]));
+        assert_eq!(radii(&loaded), [2.31, 1.7, 1.2, 2.71]);
+        assert_eq!(loaded.scene.position(1), DVec3::new(1.0, -2.5, 3.0));
+        assert_eq!(loaded.report, Default::default());
+        let options = ReadOptions::default().radii(Radii::Covalent).radius_scale(2.0);
+        assert_eq!(radii(&load(&options, "1\n\nO 0 0 0").unwrap()), [1.32]);
+    }
+
+    #[test]
+    fn names_that_are_no_elements_have_an_estimated_radius() {
+        let loaded = read("2\n\nA 0 0 0\nQ 2 0 0\n");
+        assert_eq!(loaded.scene.attributes.elements, None);
+        assert_eq!(radii(&loaded), [1.5; 2]);
+        assert!(loaded.report.warnings[0].starts_with("the file gives no radius"));
+    }
+
+    #[test]
+    fn a_name_that_is_no_element_among_others_is_told() {
+        let loaded = read("3\n\nC 0 0 0\nQ 2 0 0\nX 3 0 0");
+        assert_eq!(loaded.scene.attributes.elements, Some(vec![6, 0, 0]));
+        assert_eq!(radii(&loaded), [1.7; 3]);
+        let warning =
+            "the element of 2 atoms is not known and was given the radius 1.7; the first: line 4";
+        assert_eq!(loaded.report.warnings, [warning]);
+        let loaded = load(&ReadOptions::default().radius(0.5), "2\n\nC 0 0 0\nQ 2 0 0\n").unwrap();
+        assert_eq!(
+            loaded.report.warnings,
+            ["the element of 1 atoms is not known; the first: line 4"]
+        );
+    }
+
+    #[test]
+    fn further_columns_are_scalars_if_they_are_numbers() {
+        let loaded = read("2\n\nC 0 0 0 0.1 up -7\nC 1 0 0 0.2 down nan\n");
+        assert_eq!(scalar(&loaded, "column_5"), [0.1, 0.2]);
+        assert_eq!(scalar(&loaded, "column_7")[0], -7.0);
+        assert!(scalar(&loaded, "column_7")[1].is_nan());
+        assert_eq!(loaded.scene.attributes.scalars.len(), 2);
+    }
+
+    #[test]
+    fn only_wanted_columns_are_kept() {
+        let wanted = Scalars::Named(vec!["column_6".into()]);
+        let options = ReadOptions::default().scalars(wanted);
+        let loaded = load(&options, "1\n\nC 0 0 0 5 6 7\n").unwrap();
+        assert_eq!(loaded.scene.attributes.scalars.len(), 1);
+        assert_eq!(scalar(&loaded, "column_6"), [6.0]);
+    }
+
+    #[test]
+    fn lines_that_cannot_be_used_are_counted() {
+        let loaded = read("7\n\nC\nC 0 0 0\nC 1 0\n\nC 2 0 0 0\nC 3 x.5 0\nC 4 0 nan\n\n");
+        assert_eq!(xs(&loaded), [0.0]);
+        assert_eq!(loaded.scene.attributes.ids, Some(vec![1]));
+        let skipped: Vec<_> = loaded
+            .report
+            .skipped
+            .iter()
+            .map(|s| (s.problem, s.count, s.first.to_string(), s.value.as_str()))
+            .collect();
+        let expected = [
+            (Problem::Columns, 4, "line 3".to_owned(), "\"C\""),
+            (Problem::Number, 1, "line 8".to_owned(), "\"x.5\""),
+            (Problem::Position, 1, "line 9".to_owned(), "(4, 0, NaN)"),
+        ];
+        assert_eq!(skipped, expected);
+    }
+
+    #[test]
+    fn strict_reading_ends_at_the_first_bad_line() {
+        let options = ReadOptions::default().strict(true);
+        for (text, error) in [
+            ("2\n\nC\nC 0 0 0\n", "line 3: a wrong number of columns: \"C\""),
+            ("2\n\nC 0 0 0\nC 0 b 0\n", "line 4: not a number: \"b\""),
+            ("1\n\nC\n", "line 3: a wrong number of columns: \"C\""),
+        ] {
+            let found = load(&options, text).unwrap_err().to_string();
+            assert_eq!(found, format!("a.xyz, {error}"));
+        }
+    }
+
+    #[test]
+    fn rows_may_have_no_name() {
+        let loaded = read("2\npoints\n0 0 0\n3 0 0\n");
+        assert_eq!((xs(&loaded), &loaded.scene.attributes.elements), (vec![0.0, 3.0], &None));
+        let loaded = read("2\npoints\n0.5 0 0 9\n3 0 0 8\n");
+        assert_eq!((xs(&loaded), scalar(&loaded, "column_4")), (vec![0.5, 3.0], vec![9.0, 8.0]));
+    }
+
+    #[test]
+    fn a_mark_of_utf_8_does_no_harm() {
+        assert_eq!(xs(&read("\u{feff}1\n\nC 7 0 0\n")), [7.0]);
+    }
+}
+
+mod frames {
+    use super::*;
+
+    #[test]
+    fn frames_are_found_by_index() {
+        let second = load(&ReadOptions::default().frame(1), TWO).unwrap();
+        assert_eq!(xs(&second), [5.0]);
+        assert_eq!(xs(&read(TWO)), [0.0, 1.0]);
+        let spaced = TWO.replace("1\nsec", "\n\n 1 \nsec");
+        assert_eq!(xs(&load(&ReadOptions::default().frame(1), &spaced).unwrap()), [5.0]);
+    }
+
+    #[test]
+    fn a_missing_frame_names_how_many_there_are() {
+        let error = load(&ReadOptions::default().frame(2), TWO).unwrap_err().to_string();
+        assert_eq!(error, "a.xyz: there is no frame 2: the file has 2, counted from 0");
+        let error = load(&ReadOptions::default().frame(1), "1 2 3\n").unwrap_err().to_string();
+        assert_eq!(error, "a.xyz: there is no frame 1: the file has 1, counted from 0");
+        assert_eq!(fail("\n\n"), "a.xyz: there is no frame 0: the file has 0, counted from 0");
+    }
+
+    #[test]
+    fn wrong_counts_are_told() {
+        for count in ["-3", "2.5", "99999999999999999999", "many"] {
+            let error =
+                format!("line 1: the number of atoms must be a whole number, not \"{count}\"");
+            assert_eq!(fail(&format!("{count}\n\nC 0 0 0\n")), format!("a.xyz, {error}"));
+        }
+        let few = "the frame must have 3 atoms, as it says, not";
+        assert_eq!(fail("3\n\nC 0 0 0\n"), format!("a.xyz, line 4: {few} 1"));
+        assert_eq!(fail("3\n"), format!("a.xyz, line 2: {few} 0"));
+        assert_eq!(fail("3\nC 0 0 0\nC 1 0 0"), format!("a.xyz, line 4: {few} 2"));
+        assert_eq!(fail("3\nC 0 0 0"), format!("a.xyz, line 3: {few} 1"));
+        let huge = format!("{}\n\nC 0 0 0\n", u64::MAX);
+        assert_eq!(
+            fail(&huge),
+            format!("a.xyz, line 4: {few} 1").replace('3', &u64::MAX.to_string())
+        );
+        assert_eq!(fail("0\n\n"), "a.xyz: there is nothing to draw: 0 records were skipped");
+    }
+
+    #[test]
+    fn more_atoms_than_the_count_are_told() {
+        let loaded = read("1\n\nC 0 0 0\nC 1 0 0\n");
+        assert_eq!(xs(&loaded), [0.0]);
+        let warning = "line 4, after the frame, was not read: it starts no frame, \"C 1 0 0\"";
+        assert_eq!(loaded.report.warnings, [warning]);
+    }
+
+    #[test]
+    fn the_comment_may_be_missing() {
+        for (text, expected) in [
+            ("1\nC 4 0 0", [4.0].as_slice()),
+            ("3\nC 4 0 0\nO 5 0 0\nN 6 0 0\n", &[4.0, 5.0, 6.0]),
+            ("2\nC 4 0 0\nO 5 0 0\n2\nC 0 0 0\nC 1 0 0\n", &[4.0, 5.0]),
+            ("2\n4 0 0\n5 0 0\n\n", &[4.0, 5.0]),
+        ] {
+            let loaded = read(text);
+            assert_eq!(xs(&loaded), expected, "{text}");
+            assert_eq!(loaded.scene.attributes.ids, None);
+            let warning = "the frame has no comment: its second line was taken for an atom";
+            assert!(loaded.report.warnings.iter().any(|found| found == warning), "{text}");
+        }
+        let three = read("3\nC 4 0 0 1\nO 5 0 0 2\nN 6 0 0 3\n");
+        assert_eq!(three.scene.attributes.elements, Some(vec![6, 8, 7]));
+        assert_eq!(radii(&three), [1.7, 1.52, 1.55]);
+        assert_eq!(scalar(&three, "column_5"), [1.0, 2.0, 3.0]);
+    }
+
+    #[test]
+    fn ids_are_right_where_the_comment_is_missing() {
+        let loaded = read("3\nC 4 0 0\nO 5 0 0\nN 6 nan 0\n");
+        assert_eq!(
+            (xs(&loaded), &loaded.scene.attributes.ids),
+            (vec![4.0, 5.0], &Some(vec![0, 1]))
+        );
+        let loaded = read("3\nC 4 0 1e999\nO 5 0 0\nN 6 0 0\n");
+        assert_eq!(
+            (xs(&loaded), &loaded.scene.attributes.ids),
+            (vec![5.0, 6.0], &Some(vec![1, 2]))
+        );
+    }
+
+    #[test]
+    fn a_comment_that_looks_like_an_atom_is_a_comment() {
+        for (text, expected) in [
+            ("1\nbox 9 9 9\nC 4 0 0\n", [4.0].as_slice()),
+            ("2\n9 9 9\nC 4 0 0\nC 5 0 0\n", &[4.0, 5.0]),
+            ("2\n9 9 9\n4 0 0\n5 0 0\n", &[4.0, 5.0]),
+            ("2\nbox 9 9 9\nC 4 0 0\nC 5 0 0\n1\n\nC 0 0 0\n", &[4.0, 5.0]),
+            ("2\nbox 9 9 9\nC 4 0 0\nC x 0 0\n", &[4.0]),
+        ] {
+            let loaded = read(text);
+            assert_eq!(xs(&loaded), expected, "{text}");
+            assert!(!loaded.report.warnings.iter().any(|text| text.contains("comment")), "{text}");
+        }
+    }
+
+    #[test]
+    fn frames_without_comment_can_be_passed_over() {
+        let options = ReadOptions::default().frame(2);
+        let text = "1\nC 4 0 0\n2\nbox 9 9 9\nC 4 0 0\nC 5 0 0\n1\n\nC 8 0 0\n";
+        assert_eq!(xs(&load(&options, text).unwrap()), [8.0]);
+    }
+}
+
+mod points {
+    use super::*;
+
+    #[test]
+    fn rows_need_no_count() {
+        let loaded = read("# x y z\n0.5 0 0\n\n// more\n1 2 3\n4 5\n6 7 8\n");
+        assert_eq!(xs(&loaded), [0.5, 1.0, 6.0]);
+        assert_eq!(loaded.scene.attributes.ids, Some(vec![0, 1, 3]));
+        assert_eq!(loaded.report.skipped[0].value, "\"4 5\"");
+    }
+
+    #[test]
+    fn further_columns_are_scalars_and_no_colors() {
+        let loaded = read("1 2 3 255 0 0\n4 5 6 0 255 0\n");
+        assert_eq!(loaded.scene.attributes.colors, None);
+        assert_eq!(scalar(&loaded, "column_4"), [255.0, 0.0]);
+        assert_eq!(xs(&loaded), [1.0, 4.0]);
+    }
+
+    #[test]
+    fn rows_may_have_names() {
+        let loaded = read("C 1 2 3\nO 4 5 6\n");
+        assert_eq!(loaded.scene.attributes.elements, Some(vec![6, 8]));
+    }
+
+    #[test]
+    fn other_text_is_refused() {
+        let error = "a.xyz, line 1: the first line must be the number of atoms, or a row of \
+                     coordinates, not \"3 atoms\"";
+        assert_eq!(fail("3 atoms\n\nC 1 2 3\n"), error);
+        assert!(fail("x,y,z\n1,2,3\n").ends_with("must be a whole number, not \"x,y,z\""));
+    }
+
+    #[test]
+    fn columns_without_end_are_refused() {
+        let error = fail(&"1 ".repeat(5000));
+        assert_eq!(error, "a.xyz, line 1: there must be at most 4096 columns, not 5000");
+    }
+}
+
+mod extended {
+    use super::*;
+
+    const TEXT: &str = "2\nLattice=\"9 0 0 0 9 0 0 0 9\" Properties=id:I:1:pos:R:3:species:S:1:\
+        velo:R:3:radius:R:1:color:R:3:fixed:L:1\n\
+        7 1 2 3 Fe .1 .2 .3 0.5 1 0.5 0 T\n8 4 5 6 Q .4 .5 .6 0.25 0 0.25 1 F\n";
+
+    #[test]
+    fn columns_are_what_the_comment_says() {
+        let loaded = read(TEXT);
+        assert_eq!(loaded.scene.attributes.elements, Some(vec![26, 0]));
+        assert_eq!(radii(&loaded), [0.5, 0.25]);
+        let colors = Some(vec![[255, 128, 0, 255], [0, 64, 255, 255]]);
+        assert_eq!(loaded.scene.attributes.colors, colors);
+        assert_eq!(scalar(&loaded, "velo_y"), [0.2, 0.5]);
+        assert_eq!(scalar(&loaded, "id"), [7.0, 8.0]);
+        assert_eq!(scalar(&loaded, "fixed"), [1.0, 0.0]);
+        assert_eq!(xs(&loaded), [1.0, 4.0]);
+    }
+
+    #[test]
+    fn atomic_numbers_are_elements() {
+        let loaded = read("2\nProperties=Z:I:1:pos:R:3\n8 0 0 0\n1 1 0 0\n");
+        assert_eq!(loaded.scene.attributes.elements, Some(vec![8, 1]));
+        assert_eq!(radii(&loaded), [1.52, 1.2]);
+    }
+
+    #[test]
+    fn colors_out_of_range_are_told() {
+        let text =
+            "2\nProperties=pos:R:3:radius:R:1:color:I:4\n0 0 0 1 300 0 -1 9\n1 0 0 1 1 2 3 4\n";
+        let loaded = read(text);
+        assert_eq!(loaded.scene.attributes.colors, Some(vec![[255, 0, 0, 9], [1, 2, 3, 4]]));
+        assert_eq!(loaded.report.warnings, ["colors outside of their range were moved into it"]);
+    }
+
+    #[test]
+    fn bad_values_are_counted() {
+        let text = TEXT.replace("0.25 0 0.25 1 F", "-1 0 0.25 1 F");
+        assert_eq!(read(&text).report.skipped[0].problem, Problem::Radius);
+        for (from, to) in [(" F\n", " maybe\n"), (" 1 F", " nan F"), (".4 ", ".4.4 ")] {
+            let loaded = read(&TEXT.replace(from, to));
+            assert_eq!(loaded.report.skipped[0].problem, Problem::Number, "{to}");
+        }
+        let loaded = read(&TEXT.replace(" F\n", "\n"));
+        assert_eq!(loaded.report.skipped[0].problem, Problem::Columns);
+    }
+
+    #[test]
+    fn a_wrong_header_is_an_error() {
+        let error = fail(&TEXT.replace("0 0 9\"", "0 0\""));
+        assert_eq!(error, "a.xyz, line 2: Lattice must have nine numbers, not 8");
+        let later = format!("{TEXT}1\nProperties=pos:Q:3\nC 0 0 0\n");
+        assert_eq!(xs(&read(&later)), [1.0, 4.0]);
+    }
+}
+
+/// What is written is read as it was.
+mod written {
+    use super::*;
+    use puncta_core::{Scalar, Scene, Sphere};
+
+    fn rewrite(scene: &Scene) -> (String, Loaded) {
+        let mut text = Vec::new();
+        crate::xyz::write(&mut text, scene).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        let loaded = read(&text);
+        (text, loaded)
+    }
+
+    fn positions(scene: &Scene) -> Vec<DVec3> {
+        (0..scene.records.len()).map(|index| scene.position(index)).collect()
+    }
+
+    fn bits(scene: &Scene) -> Vec<(String, Vec<u32>)> {
+        let bits = |scalar: &Scalar| scalar.values.iter().map(|value| value.to_bits()).collect();
+        scene.attributes.scalars.iter().map(|scalar| (scalar.name.clone(), bits(scalar))).collect()
+    }
+
+    /// Numbers without any pattern.
+    fn noise(count: u32) -> impl Iterator<Item = f64> {
+        let mut state = 1_u64;
+        (0..count).map(move |_| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        })
+    }
+
+    #[test]
+    fn everything_comes_back() {
+        let mut text =
+            "1000\nProperties=species:S:1:pos:R:3:radius:R:1:color:I:3:a:R:1:b:R:1\n".to_owned();
+        let numbers: Vec<f64> = noise(9000).collect();
+        for row in numbers.chunks(9) {
+            let [x, y, z, radius, red, green, blue, a, b] = row.try_into().unwrap();
+            let [red, green, blue] = [red, green, blue].map(|c: f64| (c * 255.0).round());
+            let (x, y, z) = (x * 977.0 + 637_000.0, y * 500.0 - 8.5e6, z);
+            let b = (b - 0.5) * 1e-30;
+            text += &format!("Fe {x} {y} {z} {} {red} {green} {blue} {a} {b}\n", radius + 1e-3);
+        }
+        let scene = read(&text).scene;
+        assert!(scene.origin.x != 0.0 && scene.origin.y != 0.0);
+        let (_, again) = rewrite(&scene);
+        assert_eq!(again.report, Default::default());
+        let again = again.scene;
+        assert_eq!(positions(&again), positions(&scene));
+        assert_eq!(again.records, scene.records);
+        assert_eq!(again.attributes.colors, scene.attributes.colors);
+        assert_eq!(again.attributes.elements, scene.attributes.elements);
+        assert_eq!(bits(&again), bits(&scene));
+    }
+
+    #[test]
+    fn extreme_numbers_come_back() {
+        let radii = [f32::MIN_POSITIVE, 1e-30, 0.1, 1.0 / 3.0, 16_777_217.0, f32::MAX];
+        let records =
+            radii.map(|radius| Sphere::new([radius / 7.0, -radius, 0.0], radius)).to_vec();
+        let mut scene = Scene::new(records);
+        let values =
+            vec![f32::MIN_POSITIVE / 4.0, -0.0, f32::INFINITY, f32::MAX, 0.1, f32::EPSILON];
+        scene.attributes.scalars.push(Scalar { name: "s".into(), values });
+        let (_, again) = rewrite(&scene);
+        let found: Vec<f32> = again.scene.records.iter().map(|record| record.radius).collect();
+        assert_eq!(found, radii);
+        assert_eq!(bits(&again.scene), bits(&scene));
+    }
+
+    #[test]
+    fn every_color_comes_back() {
+        let byte = |i: u8| [i, 255 - i, i / 2, if i < 128 { 255 } else { i }];
+        for alpha in [false, true] {
+            let mut scene = Scene::new(vec![Sphere::new([0.0; 3], 1.0); 256]);
+            let colors =
+                (0..=255).map(byte).map(|[r, g, b, a]| [r, g, b, if alpha { a } else { 255 }]);
+            scene.attributes.colors = Some(colors.collect());
+            let (text, again) = rewrite(&scene);
+            assert_eq!(text.contains("color:R:4"), alpha);
+            assert_eq!(again.scene.attributes.colors, scene.attributes.colors);
+        }
+    }
+
+    #[test]
+    fn names_are_made_safe() {
+        let mut scene = Scene::new(vec![Sphere::new([0.0; 3], 1.0)]);
+        let names = ["a b", "a:b", "pos", "Z", "", "a_b", "\"x=1\"", "Radius", "c_1[2]", "größe"];
+        for (index, name) in (0_u8..).zip(names) {
+            let values = vec![f32::from(index)];
+            scene.attributes.scalars.push(Scalar { name: name.into(), values });
+        }
+        scene.attributes.elements = Some(vec![8]);
+        let (_, again) = rewrite(&scene);
+        let found: Vec<_> =
+            again.scene.attributes.scalars.iter().map(|s| (s.name.as_str(), s.values[0])).collect();
+        let safe = [
+            "a_b", "a_b_2", "pos_2", "Z_2", "scalar", "a_b_3", "_x_1_", "Radius_2", "c_1_2_",
+            "größe",
+        ];
+        let expected: Vec<_> = safe.into_iter().zip((0_u8..).map(f32::from)).collect();
+        assert_eq!(found, expected);
+        assert_eq!(again.scene.attributes.elements, Some(vec![8]));
+    }
+
+    #[test]
+    fn no_records_make_an_empty_frame() {
+        let mut text = Vec::new();
+        crate::xyz::write(&mut text, &Scene::new(Vec::new())).unwrap();
+        assert_eq!(text, b"0\nProperties=pos:R:3:radius:R:1\n");
+    }
+}
+
+#[test]
+fn the_glass_is_read() {
+    let Some(data) = std::env::var_os("PUNCTA_DATA") else {
+        println!("skipped: PUNCTA_DATA is not set");
+        return;
+    };
+    let path = std::path::Path::new(&data).join("ges2.xyz");
+    let first = ReadOptions::default().read(&path).unwrap();
+    assert_eq!(first.scene.records.len(), 258);
+    assert_eq!(first.report, Default::default());
+    let elements = first.scene.attributes.elements.unwrap();
+    assert_eq!((elements[0], elements[257]), (32, 16));
+    let frames = std::fs::read_to_string(&path).unwrap().lines().count() as u64 / 260;
+    let last = ReadOptions::default().frame(frames - 1).read(&path).unwrap();
+    assert_eq!(last.scene.records.len(), 258);
+    let error = ReadOptions::default().frame(frames).read(&path).unwrap_err().to_string();
+    assert!(
+        error.ends_with(&format!(
+            "there is no frame {frames}: the file has {frames}, counted from 0"
+        ))
+    );
+}
