@@ -16,6 +16,7 @@ number in a file makes a reader allocate more than the file itself justifies.
 */
 
 mod builder;
+mod color;
 pub mod elements;
 mod error;
 mod format;
@@ -29,6 +30,7 @@ mod pdb;
 mod ply;
 pub mod png;
 mod radius;
+mod stream;
 pub mod synthetic;
 mod vtk;
 mod write;
