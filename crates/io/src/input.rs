@@ -1,6 +1,9 @@
 //! Input: a stream that knows its place, for readers that tell where a file is wrong.
 
-use crate::error::{ErrorKind, Fault, Place};
+use crate::{
+    error::{ErrorKind, Fault, Place},
+    stream::{Forward, Seekable, Stream},
+};
 use std::io::{self, BufRead, Read};
 
 /// The longest line that is read; a longer one is no text.
@@ -8,7 +11,7 @@ const LINE_MAX: usize = 1 << 20;
 
 /// A stream of bytes or lines.
 pub(crate) struct Input<'a> {
-    stream: Box<dyn BufRead + 'a>,
+    stream: Stream<'a>,
     byte: u64,
     line: u64,
     /// The number of bytes from start to end, unless the stream is being decompressed.
@@ -17,7 +20,46 @@ pub(crate) struct Input<'a> {
 
 impl<'a> Input<'a> {
     pub(crate) fn new(stream: Box<dyn BufRead + 'a>, length: Option<u64>) -> Self {
-        Self { stream, byte: 0, line: 0, length }
+        Self { stream: Stream::Forward(Forward::new(stream)), byte: 0, line: 0, length }
+    }
+
+    /// An input that can [`jump`](Self::jump) anywhere.
+    pub(crate) fn seekable(stream: Box<dyn Seekable + 'a>, length: u64) -> Self {
+        Self { stream: Stream::Seekable(stream), byte: 0, line: 0, length: Some(length) }
+    }
+
+    /// Makes the next `count` bytes ones that [`jump`](Self::jump) can come back to as long as
+    /// nothing after them is read; returns how many there are.
+    ///
+    /// A stream that cannot seek is read into memory, so ask for no more than is needed.
+    pub(crate) fn hold(&mut self, count: u64) -> Result<u64, Fault> {
+        let held = self.stream.hold(count);
+        held.map_err(|error| Fault { place: Some(self.at_byte()), kind: error.into() })
+    }
+
+    /// Whether bytes must be held to be read twice.
+    pub(crate) fn must_hold(&self) -> bool {
+        matches!(self.stream, Stream::Forward(_))
+    }
+
+    /// Goes to a byte: forwards, or back to one that can be read again. `what` names what is there.
+    pub(crate) fn jump(&mut self, byte: u64, what: &str) -> Result<(), Fault> {
+        if self.must_hold() && byte >= self.byte {
+            return self.skip(byte - self.byte, what);
+        }
+        let far = || Fault::invalid(Place::Byte(byte), format!("{what} must be in the file"), byte);
+        let [from, to] = [self.byte, byte].map(i64::try_from);
+        let (Ok(from), Ok(to)) = (from, to) else { return Err(far()) };
+        self.stream
+            .move_by(to - from)
+            .map_err(|error| Fault { place: Some(Place::Byte(byte)), kind: error.into() })?;
+        self.byte = byte;
+        Ok(())
+    }
+
+    /// The offset of the next byte.
+    pub(crate) fn byte(&self) -> u64 {
+        self.byte
     }
 
     /// The place of the next byte.

@@ -17,6 +17,7 @@ number in a file makes a reader allocate more than the file itself justifies.
 
 mod atoms;
 mod builder;
+mod color;
 pub mod elements;
 mod error;
 mod format;
@@ -30,6 +31,7 @@ mod pdb;
 mod ply;
 pub mod png;
 mod radius;
+mod stream;
 pub mod synthetic;
 mod table;
 mod text;

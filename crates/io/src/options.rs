@@ -207,7 +207,7 @@ impl ReadOptions {
                 let decoder = BufReader::with_capacity(1 << 18, MultiGzDecoder::new(stream));
                 self.read_input(format, Input::new(Box::new(decoder), None))
             }
-            (_, false) => self.read_input(format, Input::new(Box::new(stream), Some(length))),
+            (_, false) => self.read_input(format, Input::seekable(Box::new(stream), length)),
         }?;
         Ok(Loaded { scene, format, report })
     }
