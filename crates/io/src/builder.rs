@@ -233,6 +233,11 @@ impl<'a> Builder<'a> {
         std::mem::take(&mut self.radius_missing)
     }
 
+    /// The colors so far, for readers that learn of their meaning only as they go.
+    pub(crate) fn colors_mut(&mut self) -> &mut Option<Vec<[u8; 4]>> {
+        &mut self.colors
+    }
+
     /// The scene of all rows, and what was found on the way.
     pub(crate) fn finish(mut self) -> Result<(Scene, Report), Fault> {
         if self.records.is_empty() {
