@@ -315,6 +315,7 @@ END
     }
 
     #[test]
+    #[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
     fn the_membrane_is_read() {
         let Some(data) = std::env::var_os("PUNCTA_DATA") else {
             println!("skipped: PUNCTA_DATA is not set");

@@ -449,6 +449,7 @@ mod written {
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 fn the_glass_is_read() {
     let Some(data) = std::env::var_os("PUNCTA_DATA") else {
         println!("skipped: PUNCTA_DATA is not set");
