@@ -24,8 +24,8 @@ type WriteScene = fn(&mut BufWriter<File>, &Scene<Sphere>) -> io::Result<()>;
 ///
 /// # Errors
 ///
-/// When the file cannot be written, or its name ends in something else, or an attribute of the scene
-/// does not have one value for each record.
+/// When the file cannot be written, or its name ends in something else, or an attribute of the
+/// scene does not have one value for each record.
 pub fn write(path: impl AsRef<Path>, scene: &Scene<Sphere>) -> Result<(), Error> {
     let path = path.as_ref();
     let write = || {

@@ -201,8 +201,8 @@ END
     fn models_are_frames() {
         let one = |x: u8| atom(" CA ", "1", &format!("{x:8}.000   0.000   0.000")[4..], "");
         let text = format!(
-            "TITLE     t\nMODEL        1\n{}{}TER\nENDMDL\nMODEL        2\nENDMDL\nMODEL 3\n{}MODEL 4\n\
-             {}ENDMDL\nCONECT\nEND\n",
+            "TITLE     t\nMODEL        1\n{}{}TER\nENDMDL\nMODEL        2\nENDMDL\n\
+             MODEL 3\n{}MODEL 4\n{}ENDMDL\nCONECT\nEND\n",
             one(1),
             one(2),
             one(3),
