@@ -17,8 +17,9 @@ manual, <https://docs.lammps.org/dump.html>. What is accepted:
 
 LAMMPS writes atoms in whatever order its processes have them. Records are ordered by the column
 `id`, so that record k is the same atom in each frame that has the same atoms, and the id of a
-record is the rank of its atom. The order is found with 12 bytes an atom beside the records, which are then
-moved in place. Atoms of the same id keep their order, with a warning.
+record is the rank of its atom. The order is found with 12 bytes an atom beside the records (16
+where rows were skipped), which are then moved in place. Atoms of the same id keep their order, with
+a warning.
 
 Rows with a wrong number of columns, or without a number where one must be, are skipped and counted.
 Fewer rows than atoms are an error.
