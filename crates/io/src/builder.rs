@@ -318,7 +318,12 @@ fn choose_origin(positions: impl Iterator<Item = [f64; 3]>) -> DVec3 {
         return center;
     }
     let step = extent.log2().floor().exp2();
-    let round = |c: f64| if c.abs() <= 1.5 * extent { 0.0 } else { (c / step).round() * step };
+    let round = |c: f64| match (c / step).round() * step {
+        _ if c.abs() <= 1.5 * extent => 0.0,
+        rounded if rounded.is_finite() => rounded,
+        // The step is so small beside `c` that the quotient overflows.
+        _ => c,
+    };
     DVec3::new(round(center.x), round(center.y), round(center.z))
 }
 
@@ -368,6 +373,12 @@ mod tests {
         for (index, position) in positions.iter().enumerate() {
             assert!((scene.position(index) - DVec3::from(*position)).abs().max_element() < 1e-7);
         }
+    }
+
+    #[test]
+    fn a_box_without_measurable_extent_has_an_origin() {
+        let scene = scene(&[[2.0, 0.0, 0.0], [2.0, 1e-320, 0.0]], Precision::Double);
+        assert_eq!(scene.origin, DVec3::new(2.0, 0.0, 0.0));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use puncta_core::{Scene, Sphere};
 use std::{
     ffi::OsString,
     fs::{self, File},
-    io::{self, BufWriter, Write},
+    io::{self, BufWriter},
     path::{Path, PathBuf},
     process,
     sync::atomic::{AtomicU64, Ordering},
@@ -24,8 +24,8 @@ type WriteScene = fn(&mut BufWriter<File>, &Scene<Sphere>) -> io::Result<()>;
 ///
 /// # Errors
 ///
-/// When the file cannot be written, or its name ends in something else, or an attribute of the scene
-/// does not have one value for each record.
+/// When the file cannot be written, or its name ends in something else, or an attribute of the
+/// scene does not have one value for each record.
 pub fn write(path: impl AsRef<Path>, scene: &Scene<Sphere>) -> Result<(), Error> {
     let path = path.as_ref();
     let write = || {
@@ -87,6 +87,7 @@ fn temporary_name(path: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Write;
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(folder).unwrap();

@@ -11,14 +11,15 @@ manual, <https://docs.lammps.org/dump.html>. What is accepted:
   bounds of a tilted box are those of a straight box around it, as LAMMPS writes them; a box of
   any orientation has its three vectors and its origin (`abc origin`). A frame without a z
   lies at z = 0, with a warning.
-* `element`, `radius` and `diameter` are what they say. All other columns are scalars, `id` and `type`
-  among them, if they hold numbers in the first row. Scalars are `f32`, so the scalar `id` is exact up
-  to 2^24 only. Without `radius` and `element` the radius is estimated.
+* `element`, `radius` and `diameter` are what they say. All other columns are scalars, `id` and
+  `type` among them, if they hold numbers in the first row. Scalars are `f32`, so the scalar `id`
+  is exact up to 2^24 only. Without `radius` and `element` the radius is estimated.
 
-LAMMPS writes atoms in whatever order its processes have them. Records are ordered by the column `id`,
-so that record k is the same atom in each frame that has the same atoms, and the id of a record is
-the rank of its atom. The order is found with 12 bytes an atom beside the records, which are then
-moved in place. Atoms of the same id keep their order, with a warning.
+LAMMPS writes atoms in whatever order its processes have them. Records are ordered by the column
+`id`, so that record k is the same atom in each frame that has the same atoms, and the id of a
+record is the rank of its atom. The order is found with 12 bytes an atom beside the records (16
+where rows were skipped), which are then moved in place. Atoms of the same id keep their order, with
+a warning.
 
 Rows with a wrong number of columns, or without a number where one must be, are skipped and counted.
 Fewer rows than atoms are an error.

@@ -54,11 +54,7 @@ fn rank_ids(scene: &mut Scene, order: &mut Vec<u32>) {
 
 /// Moves records so that the one at `order[k]` comes to `k`. The order becomes 0, 1, 2, ...
 fn apply(scene: &mut Scene, order: &mut [u32]) {
-    let mut start = 0;
-    for first in 0..u32::MAX {
-        if start >= order.len() {
-            return;
-        }
+    for (_, first) in (0..order.len()).zip(0..u32::MAX) {
         // A cycle: each place takes the record of the next one, and the last one has the first.
         let mut place = first;
         while let Some(next) = order.get_mut(place as usize) {
@@ -69,7 +65,6 @@ fn apply(scene: &mut Scene, order: &mut [u32]) {
             scene.swap(place as usize, next as usize);
             place = next;
         }
-        start += 1;
     }
 }
 
@@ -101,11 +96,11 @@ mod tests {
                 }
                 let mut scene = scene(count, skipped);
                 assert_eq!(by_id(&mut scene, &atoms), None);
-                let ids: Vec<u32> = (0..scene.records.len() as u32).map(|k| scene.id(k)).collect();
+                let ids: Vec<u32> = (0..).zip(&scene.records).map(|(k, _)| scene.id(k)).collect();
                 assert!(ids.is_sorted());
                 for (record, id) in scene.records.iter().zip(ids) {
-                    let row = record.center[0] as usize;
-                    assert_eq!(atoms[row], i64::from(id) * 3 - 50);
+                    let row = atoms.iter().position(|atom| *atom == i64::from(id) * 3 - 50);
+                    assert_eq!(row.map(|row| row as f32), Some(record.center[0]));
                 }
             }
         }

@@ -170,6 +170,7 @@ fn a_frame_far_from_home_keeps_its_digits() {
 fn wrong_heads_are_told() {
     let good = frame(&["1 2 3", "4 5 6"], "x y z");
     let bounds = "the box bounds must be";
+    let names = "the columns must have x, y and z, or xu, xs, xsu and their like";
     for (from, to, error) in [
         ("\n2\n", "\n-2\n", "line 4: the number of atoms must be a whole number, not \"-2\""),
         ("\n2\n", "\n3\n", "line 12: the frame must have 3 atoms, as it says, not 2"),
@@ -192,16 +193,8 @@ fn wrong_heads_are_told() {
             "BOUNDS abc",
             &format!("line 6: {bounds} 4 numbers in each line, not \"-1 9\""),
         ),
-        (
-            "x y z",
-            "x yy z",
-            "line 9: the columns must have x, y and z, or xu, xs, xsu and their like, not \"x yy z\"",
-        ),
-        (
-            "x y z",
-            "",
-            "line 9: the columns must have x, y and z, or xu, xs, xsu and their like, not \"\"",
-        ),
+        ("x y z", "x yy z", &format!("line 9: {names}, not \"x yy z\"")),
+        ("x y z", "", &format!("line 9: {names}, not \"\"")),
     ] {
         assert_eq!(fail(&good.replacen(from, to, 1)), format!("dump, {error}"), "{to}");
     }

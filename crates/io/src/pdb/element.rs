@@ -11,9 +11,10 @@ pub(super) fn find(name: &[u8], field: &[u8]) -> u8 {
 
 /// The element of an atom of this name.
 ///
-/// Symbols are set right in the first two columns: ` CA ` is a carbon and `CA  ` is calcium. Names of
-/// four characters leave no choice: they begin in the first column, and those of hydrogens, which
-/// are the common ones (`HG11`), would be mercury. The digit of old names stands first (`1HB `).
+/// Symbols are set right in the first two columns: ` CA ` is a carbon and `CA  ` is calcium. Names
+/// of four characters leave no choice: they begin in the first column, and those of hydrogens,
+/// which are the common ones (`HG11`), would be mercury. The digit of old names stands first
+/// (`1HB `).
 fn by_name(name: &[u8]) -> Option<u8> {
     let &[first, second, ..] = name else {
         return elements::find(name.trim_ascii());

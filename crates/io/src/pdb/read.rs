@@ -201,8 +201,8 @@ END
     fn models_are_frames() {
         let one = |x: u8| atom(" CA ", "1", &format!("{x:8}.000   0.000   0.000")[4..], "");
         let text = format!(
-            "TITLE     t\nMODEL        1\n{}{}TER\nENDMDL\nMODEL        2\nENDMDL\nMODEL 3\n{}MODEL 4\n\
-             {}ENDMDL\nCONECT\nEND\n",
+            "TITLE     t\nMODEL        1\n{}{}TER\nENDMDL\nMODEL        2\nENDMDL\n\
+             MODEL 3\n{}MODEL 4\n{}ENDMDL\nCONECT\nEND\n",
             one(1),
             one(2),
             one(3),
@@ -315,6 +315,7 @@ END
     }
 
     #[test]
+    #[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
     fn the_membrane_is_read() {
         let Some(data) = std::env::var_os("PUNCTA_DATA") else {
             println!("skipped: PUNCTA_DATA is not set");

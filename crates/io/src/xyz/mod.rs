@@ -7,12 +7,12 @@ follow each other. There is no standard, but one description that most programs 
 
 * **Plain XYZ**: a name, x, y and z in each line, in angstrom. The first row tells how many columns
   there are, and further ones that hold numbers become the scalars `column_5`, `column_6`, ...
-  The name is a symbol, a label (`C12`, but `CA` is calcium), an atomic number or anything else. Rows
-  whose first column has a fraction have no name: they begin with x.
+  The name is a symbol, a label (`C12`, but `CA` is calcium), an atomic number or anything else.
+  Rows whose first column has a fraction have no name: they begin with x.
 * **Extended XYZ**: the comment has `Properties=species:S:1:pos:R:3:...`, which names the columns.
   `species` (also `element`, `Z`, ...), `pos`, `radius` and `color` (`R`: 0 to 1, `I`: 0 to 255) are
-  what they say. Other numbers become scalars: `name` for one column, `name_x`, `name_y`, `name_z` for
-  three, `name_0`, `name_1`, ... else. `Lattice` must have nine numbers; it is not kept.
+  what they say. Other numbers become scalars: `name` for one column, `name_x`, `name_y`, `name_z`
+  for three, `name_0`, `name_1`, ... else. `Lattice` must have nine numbers; it is not kept.
 * **No comment**: some programs leave the second line out. If it looks like an atom, has as many
   columns as the next line, and the line where the last atom should be is the end of the file or
   starts another frame, then it is an atom.

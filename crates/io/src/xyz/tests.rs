@@ -1,4 +1,4 @@
-//! Tests of the reader and the writer together.
+//! Tests of the reader.
 
 use crate::{Error, Loaded, Problem, ReadOptions, Scalars, elements::Radii};
 use glam::DVec3;
@@ -333,122 +333,8 @@ mod extended {
     }
 }
 
-/// What is written is read as it was.
-mod written {
-    use super::*;
-    use puncta_core::{Scalar, Scene, Sphere};
-
-    fn rewrite(scene: &Scene) -> (String, Loaded) {
-        let mut text = Vec::new();
-        crate::xyz::write(&mut text, scene).unwrap();
-        let text = String::from_utf8(text).unwrap();
-        let loaded = read(&text);
-        (text, loaded)
-    }
-
-    fn positions(scene: &Scene) -> Vec<DVec3> {
-        (0..scene.records.len()).map(|index| scene.position(index)).collect()
-    }
-
-    fn bits(scene: &Scene) -> Vec<(String, Vec<u32>)> {
-        let bits = |scalar: &Scalar| scalar.values.iter().map(|value| value.to_bits()).collect();
-        scene.attributes.scalars.iter().map(|scalar| (scalar.name.clone(), bits(scalar))).collect()
-    }
-
-    /// Numbers without any pattern.
-    fn noise(count: u32) -> impl Iterator<Item = f64> {
-        let mut state = 1_u64;
-        (0..count).map(move |_| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        })
-    }
-
-    #[test]
-    fn everything_comes_back() {
-        let mut text =
-            "1000\nProperties=species:S:1:pos:R:3:radius:R:1:color:I:3:a:R:1:b:R:1\n".to_owned();
-        let numbers: Vec<f64> = noise(9000).collect();
-        for row in numbers.chunks(9) {
-            let [x, y, z, radius, red, green, blue, a, b] = row.try_into().unwrap();
-            let [red, green, blue] = [red, green, blue].map(|c: f64| (c * 255.0).round());
-            let (x, y, z) = (x * 977.0 + 637_000.0, y * 500.0 - 8.5e6, z);
-            let b = (b - 0.5) * 1e-30;
-            text += &format!("Fe {x} {y} {z} {} {red} {green} {blue} {a} {b}\n", radius + 1e-3);
-        }
-        let scene = read(&text).scene;
-        assert!(scene.origin.x != 0.0 && scene.origin.y != 0.0);
-        let (_, again) = rewrite(&scene);
-        assert_eq!(again.report, Default::default());
-        let again = again.scene;
-        assert_eq!(positions(&again), positions(&scene));
-        assert_eq!(again.records, scene.records);
-        assert_eq!(again.attributes.colors, scene.attributes.colors);
-        assert_eq!(again.attributes.elements, scene.attributes.elements);
-        assert_eq!(bits(&again), bits(&scene));
-    }
-
-    #[test]
-    fn extreme_numbers_come_back() {
-        let radii = [f32::MIN_POSITIVE, 1e-30, 0.1, 1.0 / 3.0, 16_777_217.0, f32::MAX];
-        let records =
-            radii.map(|radius| Sphere::new([radius / 7.0, -radius, 0.0], radius)).to_vec();
-        let mut scene = Scene::new(records);
-        let values =
-            vec![f32::MIN_POSITIVE / 4.0, -0.0, f32::INFINITY, f32::MAX, 0.1, f32::EPSILON];
-        scene.attributes.scalars.push(Scalar { name: "s".into(), values });
-        let (_, again) = rewrite(&scene);
-        let found: Vec<f32> = again.scene.records.iter().map(|record| record.radius).collect();
-        assert_eq!(found, radii);
-        assert_eq!(bits(&again.scene), bits(&scene));
-    }
-
-    #[test]
-    fn every_color_comes_back() {
-        let byte = |i: u8| [i, 255 - i, i / 2, if i < 128 { 255 } else { i }];
-        for alpha in [false, true] {
-            let mut scene = Scene::new(vec![Sphere::new([0.0; 3], 1.0); 256]);
-            let colors =
-                (0..=255).map(byte).map(|[r, g, b, a]| [r, g, b, if alpha { a } else { 255 }]);
-            scene.attributes.colors = Some(colors.collect());
-            let (text, again) = rewrite(&scene);
-            assert_eq!(text.contains("color:R:4"), alpha);
-            assert_eq!(again.scene.attributes.colors, scene.attributes.colors);
-        }
-    }
-
-    #[test]
-    fn names_are_made_safe() {
-        let mut scene = Scene::new(vec![Sphere::new([0.0; 3], 1.0)]);
-        let names = ["a b", "a:b", "pos", "Z", "", "a_b", "\"x=1\"", "Radius", "c_1[2]", "größe"];
-        for (index, name) in (0_u8..).zip(names) {
-            let values = vec![f32::from(index)];
-            scene.attributes.scalars.push(Scalar { name: name.into(), values });
-        }
-        scene.attributes.elements = Some(vec![8]);
-        let (_, again) = rewrite(&scene);
-        let found: Vec<_> =
-            again.scene.attributes.scalars.iter().map(|s| (s.name.as_str(), s.values[0])).collect();
-        let safe = [
-            "a_b", "a_b_2", "pos_2", "Z_2", "scalar", "a_b_3", "_x_1_", "Radius_2", "c_1_2_",
-            "größe",
-        ];
-        let expected: Vec<_> = safe.into_iter().zip((0_u8..).map(f32::from)).collect();
-        assert_eq!(found, expected);
-        assert_eq!(again.scene.attributes.elements, Some(vec![8]));
-    }
-
-    #[test]
-    fn no_records_make_an_empty_frame() {
-        let mut text = Vec::new();
-        crate::xyz::write(&mut text, &Scene::new(Vec::new())).unwrap();
-        assert_eq!(text, b"0\nProperties=pos:R:3:radius:R:1\n");
-    }
-}
-
 #[test]
+#[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 fn the_glass_is_read() {
     let Some(data) = std::env::var_os("PUNCTA_DATA") else {
         println!("skipped: PUNCTA_DATA is not set");
