@@ -62,6 +62,8 @@ enum Mutation {
     Number(Index, Vec<u8>),
     /// Puts it in the place of a word.
     Word(Index, &'static str),
+    /// Puts it in the place of a whole number.
+    Count(Index, &'static str),
 }
 
 fn mutation() -> impl Strategy<Value = Mutation> {
@@ -104,6 +106,8 @@ fn mutation() -> impl Strategy<Value = Mutation> {
         "2147483647",
         "-2147483648",
     ];
+    let counts = vec!["0", "4", "1000000", "100000000", "4294967294", "18446744073709551615"];
+    let count = proptest::sample::select(counts);
     let number = proptest::sample::select(numbers);
     let word = proptest::sample::select(words);
     prop_oneof![
@@ -114,6 +118,7 @@ fn mutation() -> impl Strategy<Value = Mutation> {
         (index(), index()).prop_map(|(from, to)| Mutation::Repeat(from, to)),
         (index(), number).prop_map(|(at, number)| Mutation::Number(at, number)),
         (index(), word).prop_map(|(at, word)| Mutation::Word(at, word)),
+        (index(), count).prop_map(|(at, word)| Mutation::Count(at, word)),
     ]
 }
 
@@ -144,13 +149,25 @@ fn mutate(file: &mut Vec<u8>, mutation: &Mutation) {
             let end = (at + number.len()).min(length);
             file.splice(at..end, number.iter().copied());
         }
-        Mutation::Word(at, word) => {
-            let starts: Vec<usize> =
-                (0..length).filter(|&i| i == 0 || file[i - 1].is_ascii_whitespace()).collect();
-            let start = starts[at.index(starts.len())];
-            let end = file[start..].iter().position(u8::is_ascii_whitespace);
-            file.splice(start..end.map_or(length, |end| start + end), word.bytes());
+        Mutation::Word(at, word) => replace_word(file, at, word, |_| true),
+        Mutation::Count(at, word) => {
+            replace_word(file, at, word, |word| word.iter().all(u8::is_ascii_digit));
         }
+    }
+}
+
+/// Puts `word` in the place of one of the words that are wanted.
+fn replace_word(file: &mut Vec<u8>, at: &Index, word: &str, is_wanted: impl Fn(&[u8]) -> bool) {
+    let end = |start: usize| {
+        let length = file[start..].iter().position(u8::is_ascii_whitespace);
+        length.map_or(file.len(), |length| start + length)
+    };
+    let is_start = |i: usize| i == 0 || file[i - 1].is_ascii_whitespace();
+    let words = (0..file.len()).filter(|&i| is_start(i)).map(|start| start..end(start));
+    let wanted: Vec<_> =
+        words.filter(|range| !range.is_empty() && is_wanted(&file[range.clone()])).collect();
+    if !wanted.is_empty() {
+        file.splice(at.get(&wanted).clone(), word.bytes());
     }
 }
 
