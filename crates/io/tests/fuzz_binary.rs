@@ -1,6 +1,9 @@
 //! Mutated MMPLD and PLY files: whatever is in them, reading ends, without a panic, with memory in
 //! proportion to the file; and a compressed file gives the scene that the plain one gives.
 
+#![expect(clippy::cast_possible_truncation, reason = "the numbers of tests are small")]
+#![expect(clippy::unwrap_used, reason = "a test may fail")]
+
 use flate2::{Compression, write::GzEncoder};
 use proptest::{collection::vec, prelude::*, sample::Index};
 use puncta_io::{Format, ReadOptions};
