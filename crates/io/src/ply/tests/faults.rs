@@ -26,11 +26,13 @@ const WRONG: &[(&str, &str)] = &[
     ("ply\nformat ascii\n", r#"line 2: the version must be 1.0, not """#),
     (
         "ply\nformat binary 1.0\n",
-        r#"line 2: the format must be ascii, binary_little_endian or binary_big_endian, not "binary""#,
+        "line 2: the format must be ascii, binary_little_endian or binary_big_endian, not \
+         \"binary\"",
     ),
     (
         "ply\nformat ascii 1.0\nformat ascii 1.0\n",
-        r#"line 3: a line of the header must be one format, or an element, property, comment, obj_info or end_header, not "format ascii 1.0""#,
+        "line 3: a line of the header must be one format, or an element, property, comment, \
+         obj_info or end_header, not \"format ascii 1.0\"",
     ),
     ("ply\nelement vertex 1\nend_header\n", "line 3: the header must have a format, not none"),
     (
@@ -60,7 +62,8 @@ const WRONG: &[(&str, &str)] = &[
     ),
     (
         "ply\nelement a 1\nproperty half x\n",
-        r#"line 3: the type must be char, uchar, short, ushort, int, uint, float, double, int8, uint8, int16, uint16, int32, uint32, float32 or float64, not "half""#,
+        "line 3: the type must be char, uchar, short, ushort, int, uint, float, double, int8, \
+         uint8, int16, uint16, int32, uint32, float32 or float64, not \"half\"",
     ),
     (
         "ply\nelement a 1\nproperty list float int x\n",
@@ -69,7 +72,8 @@ const WRONG: &[(&str, &str)] = &[
     ("ply\nelement a 1\nproperty float\n", r#"line 3: a name must have 1 to 1024 bytes, not """#),
     (
         "ply\nvertex 1\n",
-        r#"line 2: a line of the header must be one format, or an element, property, comment, obj_info or end_header, not "vertex 1""#,
+        "line 2: a line of the header must be one format, or an element, property, comment, \
+         obj_info or end_header, not \"vertex 1\"",
     ),
     (
         "ply\nformat ascii 1.0\nelement face 1\nelement edge 1\nend_header\n",
@@ -77,7 +81,8 @@ const WRONG: &[(&str, &str)] = &[
     ),
     ("ply\nformat ascii 1.0\nend_header\n", "line 1: there must be an element vertex, not none"),
     (
-        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty list int int y\nproperty float z\nend_header\n",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty list int int y\n\
+         property float z\nend_header\n",
         r#"line 3: vertex must have a number y, not "x z""#,
     ),
 ];

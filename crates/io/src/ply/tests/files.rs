@@ -64,9 +64,11 @@ fn a_text_with_everything_is_read() {
         b"ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nobj_info num_cols 512\r\n\
         element camera 2\r\nproperty float focus\r\nproperty list uchar float lens\r\n\
         element vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty list int int faces\r\n\
-        property double z\r\nproperty float radius\r\nproperty uchar red\r\nproperty uchar green\r\n\
+        property double z\r\nproperty float radius\r\nproperty uchar red\r\n\
+        property uchar green\r\n\
         property uchar blue\r\nproperty uchar element\r\nproperty float distance[<0.1]\r\n\
-        property int r\r\nelement face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n\
+        property int r\r\nelement face 1\r\nproperty list uchar int vertex_indices\r\n\
+        end_header\r\n\
         0.5 2 1 2\r\n0.25 0\r\n1 2 0 3.5 0.5 10 20 30 6 1e-3 7\r\n\r\n \
         -1 +2.5e0 2 9 9 -3 .25 1 2 3 8 nan -8\r\n4 5 1 0 6 2 255 255 255 0 0 0\r\n3 0 1 2\r\n",
     );
