@@ -15,7 +15,7 @@ pub(crate) struct Colors {
 impl Colors {
     /// The color with these parts, which should be from 0 to 1: parts outside are taken for the
     /// nearest end, and a color with a NaN in it becomes white.
-    pub(crate) fn from_parts(&mut self, parts: [f64; 4]) -> [u8; 4] {
+    pub(crate) fn color(&mut self, parts: [f64; 4]) -> [u8; 4] {
         if parts.iter().any(|part| part.is_nan()) {
             self.not_numbers += 1;
             return WHITE;
@@ -55,7 +55,7 @@ mod tests {
             let part = f64::from(byte) / 255.0;
             let word = f64::from(u16::from(byte) * 257) / 65535.0;
             let single = f64::from(f32::from(byte) / 255.0);
-            assert_eq!(colors.from_parts([part, word, single, 1.0]), [byte, byte, byte, 255]);
+            assert_eq!(colors.color([part, word, single, 1.0]), [byte, byte, byte, 255]);
         }
         assert_eq!((colors.outside, colors.not_numbers), (0, 0));
     }
@@ -63,8 +63,8 @@ mod tests {
     #[test]
     fn what_is_no_color_is_counted() {
         let mut colors = Colors::default();
-        assert_eq!(colors.from_parts([-1.0, 255.0, f64::INFINITY, 0.0]), [0, 255, 255, 0]);
-        assert_eq!(colors.from_parts([0.0, f64::NAN, 0.0, 0.0]), WHITE);
+        assert_eq!(colors.color([-1.0, 255.0, f64::INFINITY, 0.0]), [0, 255, 255, 0]);
+        assert_eq!(colors.color([0.0, f64::NAN, 0.0, 0.0]), WHITE);
         assert_eq!((colors.outside, colors.not_numbers), (1, 1));
     }
 }

@@ -93,8 +93,10 @@ fn find_frame(input: &mut Input<'_>, frames: u32, frame: u64) -> Result<(u64, u6
 /// Six numbers: a box.
 pub(super) fn floats(bytes: &[u8; 24]) -> [f32; 6] {
     let mut floats = [0.0; 6];
-    for (float, bytes) in floats.iter_mut().zip(bytes.as_chunks().0) {
-        *float = f32::from_le_bytes(*bytes);
+    for (float, bytes) in floats.iter_mut().zip(bytes.chunks_exact(4)) {
+        let mut number = [0; 4];
+        number.copy_from_slice(bytes);
+        *float = f32::from_le_bytes(number);
     }
     floats
 }

@@ -209,7 +209,8 @@ impl ListHeader {
         if list.bytes().is_none_or(|bytes| bytes > left) {
             let stride = types.stride();
             let what = format!(
-                "the particles, {stride} bytes each, must fit into the {left} bytes left of the frame"
+                "the particles, {stride} bytes each, must fit into the {left} bytes left of \
+                 the frame"
             );
             return Err(Fault::invalid(count_place, what, count));
         }

@@ -103,7 +103,8 @@ fn warn(builder: &mut Builder<'_>, file: &FileHeader, layout: &Layout) {
     if !layout.deviating.is_empty() {
         let lists = layout.deviating.len();
         builder.warn(format!(
-            "{lists} lists of frame {frame} are written in a way that is known to be wrong, but fits"
+            "{lists} lists of frame {frame} are written in a way that is known to be wrong, \
+             but fits"
         ));
     }
     if layout.trailing > 0 {

@@ -131,10 +131,10 @@ fn read_color(bytes: &[u8], list: &ListHeader, colors: &mut Colors) -> ([u8; 4],
             [bytes[0], bytes[1], bytes[2], alpha]
         }
         Color::FloatRgb => {
-            colors.from_parts([single(bytes, 0), single(bytes, 4), single(bytes, 8), 1.0])
+            colors.color([single(bytes, 0), single(bytes, 4), single(bytes, 8), 1.0])
         }
-        Color::FloatRgba => colors.from_parts([0, 4, 8, 12].map(|at| single(bytes, at))),
-        Color::ShortRgba => colors.from_parts([0, 2, 4, 6].map(|at| part(bytes, at))),
+        Color::FloatRgba => colors.color([0, 4, 8, 12].map(|at| single(bytes, at))),
+        Color::ShortRgba => colors.color([0, 2, 4, 6].map(|at| part(bytes, at))),
         Color::FloatI => return (WHITE, f32::from_le_bytes(number(bytes, 0))),
         Color::DoubleI => {
             #[expect(clippy::cast_possible_truncation, reason = "scalars are f32")]

@@ -61,6 +61,9 @@ pub(crate) fn write(
     Ok(out.flush()?)
 }
 
+/// The radius of a list, and where its records are in the order of the file.
+type List = (f32, Range<usize>);
+
 /// How a scene is written.
 struct Writer<'s> {
     scene: &'s Scene<Sphere>,
@@ -68,8 +71,7 @@ struct Writer<'s> {
     intensities: Option<&'s [f32]>,
     /// The records in the order of the file, if that is not the one of the scene.
     order: Vec<u32>,
-    /// The radius of each list and where its records are in the order.
-    lists: Vec<(f32, Range<usize>)>,
+    lists: Vec<List>,
 }
 
 impl<'s> Writer<'s> {
@@ -158,7 +160,7 @@ impl<'s> Writer<'s> {
 }
 
 /// Sorts records by radius; each radius makes a list.
-fn group(records: &[Sphere]) -> Result<(Vec<u32>, Vec<(f32, Range<usize>)>), Fault> {
+fn group(records: &[Sphere]) -> Result<(Vec<u32>, Vec<List>), Fault> {
     let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
     for record in records {
         *counts.entry(record.radius.to_bits()).or_default() += 1;

@@ -74,7 +74,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &ReadOptions) -> Result<(Scen
     match header.encoding {
         Encoding::Text => text::read(input, element, &mut vertex, &mut builder)?,
         Encoding::Binary(order) => {
-            binary::read(input, (element, order), &mut vertex, &mut builder)?
+            binary::read(input, (element, order), &mut vertex, &mut builder)?;
         }
     }
     if before.len() + 1 == header.elements.len() {

@@ -31,14 +31,16 @@ struct Part {
     largest: f64,
 }
 
+/// Red, green and blue, and alpha if there is one.
+type Color = ([Part; 3], Option<Part>);
+
 /// Makes rows of the numbers of a vertex.
 #[derive(Debug)]
 pub(super) struct Vertex {
     fields: Vec<Field>,
     position: [usize; 3],
     radius: Option<usize>,
-    /// Red, green and blue, and alpha if there is one.
-    color: Option<([Part; 3], Option<Part>)>,
+    color: Option<Color>,
     element: Option<usize>,
     /// The fields that are scalars, and their values in the present row.
     scalars: Vec<usize>,
@@ -117,7 +119,7 @@ impl Vertex {
         let color = self.color.map_or(WHITE, |(parts, alpha)| {
             let part = |part: Part| values[part.field] / part.largest;
             let [red, green, blue] = parts.map(part);
-            self.colors.from_parts([red, green, blue, alpha.map_or(1.0, part)])
+            self.colors.color([red, green, blue, alpha.map_or(1.0, part)])
         });
         self.scalar_values.clear();
         #[expect(clippy::cast_possible_truncation, reason = "scalars are f32")]
@@ -167,7 +169,7 @@ fn to_byte(value: f64) -> Option<u8> {
 }
 
 /// The parts of the color, or the type because of which there are none.
-fn find_color(fields: &[Field]) -> (Option<([Part; 3], Option<Part>)>, Option<Number>) {
+fn find_color(fields: &[Field]) -> (Option<Color>, Option<Number>) {
     let find = |name: &str| fields.iter().position(|field| field.name == name);
     let mut not_colors = None;
     for [red, green, blue, alpha] in COLOR_NAMES {

@@ -39,7 +39,8 @@ fn numbers_that_are_wrong_are_named() {
         (
             68,
             u64::MAX.to_le_bytes().to_vec(),
-            "byte 68: the end of the last frame must be at most the 126 bytes of the file, not 18446744073709551615",
+            "byte 68: the end of the last frame must be at most the 126 bytes of the file, \
+             not 18446744073709551615",
         ),
         (
             8,
@@ -63,12 +64,14 @@ fn numbers_that_are_wrong_are_named() {
         (
             86,
             3_u64.to_le_bytes().to_vec(),
-            "byte 86: the particles, 16 bytes each, must fit into the 32 bytes left of the frame, not 3",
+            "byte 86: the particles, 16 bytes each, must fit into the 32 bytes left of the \
+             frame, not 3",
         ),
         (
             86,
             u64::MAX.to_le_bytes().to_vec(),
-            "byte 86: the particles, 16 bytes each, must fit into the 32 bytes left of the frame, not 18446744073709551615",
+            "byte 86: the particles, 16 bytes each, must fit into the 32 bytes left of the \
+             frame, not 18446744073709551615",
         ),
     ] {
         let mut file = small();

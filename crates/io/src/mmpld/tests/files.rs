@@ -119,6 +119,7 @@ fn many_particles_and_lists_in_a_compressed_file() {
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "a skipped test says so")]
 fn sample_files_are_read_to_their_last_byte() {
     let Ok(folder) = env::var("PUNCTA_DATA") else {
         println!("skipped: PUNCTA_DATA is not set");
@@ -128,7 +129,6 @@ fn sample_files_are_read_to_their_last_byte() {
     for entry in fs::read_dir(Path::new(&folder).join("mmpld")).unwrap() {
         let path = entry.unwrap().path();
         let loaded = read(&fs::read(&path).unwrap());
-        println!("{}: {} {:?}", path.display(), loaded.scene.records.len(), loaded.scene.bounds());
         // Those of double positions have three axes of five particles besides.
         let records = if path.to_string_lossy().contains("double") { 19 } else { 4 };
         assert_eq!(loaded.scene.records.len(), records);

@@ -1,5 +1,7 @@
 //! Files made by hand, byte by byte, and the faults they can have.
 
+#![expect(clippy::cast_possible_truncation, reason = "the numbers of tests are small")]
+
 mod faults;
 mod files;
 mod hazards;
@@ -38,7 +40,8 @@ fn frame(version: u16, lists: &[Vec<u8>]) -> Vec<u8> {
     frame
 }
 
-/// A list of particles, given as bytes. Its radius is 0.5, its color (10, 20, 30), its box [0, 2]³.
+/// A list of particles, given as bytes.
+/// Its radius is 0.5, its color (10, 20, 30), its box [0, 2]³.
 fn list(version: u16, types: (u8, u8), particles: &[Vec<u8>]) -> Vec<u8> {
     let mut list = header(version, types, particles.len() as u64);
     particles.iter().for_each(|particle| list.extend(particle));

@@ -11,83 +11,85 @@ fn text(count: &str, rows: &str) -> Vec<u8> {
     join(&header("ascii", &[&element, AXES[0], AXES[1], AXES[2]]), rows.as_bytes())
 }
 
+/// Files, and what is wrong with them.
+const WRONG: &[(&str, &str)] = &[
+    ("plyx\n", r#"line 1: the first line must be "ply", not "plyx""#),
+    (
+        "ply\rformat ascii 1.0\r",
+        r#"line 1: the first line must be "ply", not "ply\rformat ascii 1.0""#,
+    ),
+    (
+        "ply\nformat ascii 1.0\nelement vertex 1\n",
+        "line 4: the file ends in the header, before end_header: 1 bytes are needed, 0 are left",
+    ),
+    ("ply\nformat ascii 2.0\n", r#"line 2: the version must be 1.0, not "2.0""#),
+    ("ply\nformat ascii\n", r#"line 2: the version must be 1.0, not """#),
+    (
+        "ply\nformat binary 1.0\n",
+        "line 2: the format must be ascii, binary_little_endian or binary_big_endian, not \
+         \"binary\"",
+    ),
+    (
+        "ply\nformat ascii 1.0\nformat ascii 1.0\n",
+        "line 3: a line of the header must be one format, or an element, property, comment, \
+         obj_info or end_header, not \"format ascii 1.0\"",
+    ),
+    ("ply\nelement vertex 1\nend_header\n", "line 3: the header must have a format, not none"),
+    (
+        "ply\nelement vertex -1\n",
+        r#"line 2: the number of an element must be a whole number, not "-1""#,
+    ),
+    (
+        "ply\nelement vertex 18446744073709551616\n",
+        r#"line 2: the number of an element must be a whole number, not "18446744073709551616""#,
+    ),
+    (
+        "ply\nelement vertex 1 2\n",
+        r#"line 2: the number of an element must be a whole number, not "1 2""#,
+    ),
+    ("ply\nelement\n", r#"line 2: the number of an element must be a whole number, not """#),
+    (
+        "ply\nelement a 1\n\nelement a 2\n",
+        r#"line 4: each element must have a name of its own, not "a""#,
+    ),
+    (
+        "ply\nproperty float x\n",
+        r#"line 2: a property must follow the element it belongs to, not "property float x""#,
+    ),
+    (
+        "ply\nelement a 1\nproperty float x\nproperty int x\n",
+        r#"line 4: each property of an element must have a name of its own, not "x""#,
+    ),
+    (
+        "ply\nelement a 1\nproperty half x\n",
+        "line 3: the type must be char, uchar, short, ushort, int, uint, float, double, int8, \
+         uint8, int16, uint16, int32, uint32, float32 or float64, not \"half\"",
+    ),
+    (
+        "ply\nelement a 1\nproperty list float int x\n",
+        r#"line 3: the length of a list must be of a type without fractions, not "float""#,
+    ),
+    ("ply\nelement a 1\nproperty float\n", r#"line 3: a name must have 1 to 1024 bytes, not """#),
+    (
+        "ply\nvertex 1\n",
+        "line 2: a line of the header must be one format, or an element, property, comment, \
+         obj_info or end_header, not \"vertex 1\"",
+    ),
+    (
+        "ply\nformat ascii 1.0\nelement face 1\nelement edge 1\nend_header\n",
+        "line 3: there must be an element vertex, not face, edge",
+    ),
+    ("ply\nformat ascii 1.0\nend_header\n", "line 1: there must be an element vertex, not none"),
+    (
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty list int int y\n\
+         property float z\nend_header\n",
+        r#"line 3: vertex must have a number y, not "x z""#,
+    ),
+];
+
 #[test]
 fn headers_that_are_wrong_are_named() {
-    for (text, fault_text) in [
-        ("plyx\n", r#"line 1: the first line must be "ply", not "plyx""#),
-        (
-            "ply\rformat ascii 1.0\r",
-            r#"line 1: the first line must be "ply", not "ply\rformat ascii 1.0""#,
-        ),
-        (
-            "ply\nformat ascii 1.0\nelement vertex 1\n",
-            "line 4: the file ends in the header, before end_header: 1 bytes are needed, 0 are left",
-        ),
-        ("ply\nformat ascii 2.0\n", r#"line 2: the version must be 1.0, not "2.0""#),
-        ("ply\nformat ascii\n", r#"line 2: the version must be 1.0, not """#),
-        (
-            "ply\nformat binary 1.0\n",
-            r#"line 2: the format must be ascii, binary_little_endian or binary_big_endian, not "binary""#,
-        ),
-        (
-            "ply\nformat ascii 1.0\nformat ascii 1.0\n",
-            r#"line 3: a line of the header must be one format, or an element, property, comment, obj_info or end_header, not "format ascii 1.0""#,
-        ),
-        ("ply\nelement vertex 1\nend_header\n", "line 3: the header must have a format, not none"),
-        (
-            "ply\nelement vertex -1\n",
-            r#"line 2: the number of an element must be a whole number, not "-1""#,
-        ),
-        (
-            "ply\nelement vertex 18446744073709551616\n",
-            r#"line 2: the number of an element must be a whole number, not "18446744073709551616""#,
-        ),
-        (
-            "ply\nelement vertex 1 2\n",
-            r#"line 2: the number of an element must be a whole number, not "1 2""#,
-        ),
-        ("ply\nelement\n", r#"line 2: the number of an element must be a whole number, not """#),
-        (
-            "ply\nelement a 1\n\nelement a 2\n",
-            r#"line 4: each element must have a name of its own, not "a""#,
-        ),
-        (
-            "ply\nproperty float x\n",
-            r#"line 2: a property must follow the element it belongs to, not "property float x""#,
-        ),
-        (
-            "ply\nelement a 1\nproperty float x\nproperty int x\n",
-            r#"line 4: each property of an element must have a name of its own, not "x""#,
-        ),
-        (
-            "ply\nelement a 1\nproperty half x\n",
-            r#"line 3: the type must be char, uchar, short, ushort, int, uint, float, double, int8, uint8, int16, uint16, int32, uint32, float32 or float64, not "half""#,
-        ),
-        (
-            "ply\nelement a 1\nproperty list float int x\n",
-            r#"line 3: the length of a list must be of a type without fractions, not "float""#,
-        ),
-        (
-            "ply\nelement a 1\nproperty float\n",
-            r#"line 3: a name must have 1 to 1024 bytes, not """#,
-        ),
-        (
-            "ply\nvertex 1\n",
-            r#"line 2: a line of the header must be one format, or an element, property, comment, obj_info or end_header, not "vertex 1""#,
-        ),
-        (
-            "ply\nformat ascii 1.0\nelement face 1\nelement edge 1\nend_header\n",
-            "line 3: there must be an element vertex, not face, edge",
-        ),
-        (
-            "ply\nformat ascii 1.0\nend_header\n",
-            "line 1: there must be an element vertex, not none",
-        ),
-        (
-            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty list int int y\nproperty float z\nend_header\n",
-            r#"line 3: vertex must have a number y, not "x z""#,
-        ),
-    ] {
+    for (text, fault_text) in WRONG {
         let options = ReadOptions::default().format(crate::Format::Ply);
         let error = options.read_bytes("a.ply", text.as_bytes()).unwrap_err().to_string();
         assert_eq!(error, format!("a.ply, {fault_text}"));

@@ -1,5 +1,7 @@
 //! Files made by hand, and the faults they can have.
 
+#![expect(clippy::cast_possible_truncation, reason = "the numbers of tests are small")]
+
 mod faults;
 mod files;
 mod writing;
