@@ -245,10 +245,10 @@ impl ReadOptions {
         };
         match self.radius {
             Some(radius) if !is_radius(radius) => {
-                return wrong("the radius for all records must be positive and finite", radius);
+                wrong("the radius for all records must be positive and finite", radius)
             }
             _ if !is_radius(self.radius_scale) => {
-                return wrong("the radius scale must be positive and finite", self.radius_scale);
+                wrong("the radius scale must be positive and finite", self.radius_scale)
             }
             _ => Ok(()),
         }

@@ -2,7 +2,7 @@
 
 use crate::{
     error::{Error, ErrorKind, Fault, quote},
-    xyz,
+    mmpld, ply, xyz,
 };
 use puncta_core::{Scene, Sphere};
 use std::{
@@ -15,11 +15,12 @@ use std::{
 };
 
 /// A writer of one format.
-type WriteScene = fn(&mut BufWriter<File>, &Scene<Sphere>) -> io::Result<()>;
+type WriteScene = fn(&mut BufWriter<File>, &Scene<Sphere>) -> Result<(), Fault>;
 
 /// Writes a scene; the name says in which format.
 ///
-/// Names end in `.xyz` or `.extxyz` for extended XYZ. A new file takes the place of an old one of
+/// Names end in `.xyz` or `.extxyz` for extended XYZ, in `.ply` for binary PLY, and in `.mmpld` for
+/// MMPLD 1.3, which keeps radii and either colors or the scalar `intensity`, but nothing else. A new file takes the place of an old one of
 /// this name once it is complete: a write that is interrupted leaves the old one as it was.
 ///
 /// # Errors
@@ -40,10 +41,12 @@ pub fn write(path: impl AsRef<Path>, scene: &Scene<Sphere>) -> Result<(), Error>
 fn writer(path: &Path) -> Result<WriteScene, Fault> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     match extension.as_str() {
-        "xyz" | "extxyz" => Ok(|file, scene| xyz::write(file, scene)),
-        // Further formats go here, each with one line, and into the text of the error.
+        "xyz" | "extxyz" => Ok(|file, scene| Ok(xyz::write(file, scene)?)),
+        "ply" => Ok(|file, scene| ply::write(file, scene)),
+        "mmpld" => Ok(|file, scene| mmpld::write(file, scene)),
         other => {
-            let what = "the name of a file to write must end in .xyz or .extxyz".to_owned();
+            let what =
+                "the name of a file to write must end in .xyz, .extxyz, .ply or .mmpld".to_owned();
             let value = if other.is_empty() {
                 "without an ending".to_owned()
             } else {
@@ -57,7 +60,7 @@ fn writer(path: &Path) -> Result<WriteScene, Fault> {
 /// Writes a file under another name beside `path`, and renames it when it is complete.
 fn replace(
     path: &Path,
-    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+    write: impl FnOnce(&mut BufWriter<File>) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     let temporary = temporary_name(path);
     let create = || {
@@ -65,12 +68,12 @@ fn replace(
         write(&mut file)?;
         let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
         file.sync_all()?;
-        fs::rename(&temporary, path)
+        Ok(fs::rename(&temporary, path)?)
     };
-    create().map_err(|error| {
+    create().map_err(|fault: Fault| {
         // What is left of the file is of no use; that it cannot be removed is not the first error.
         fs::remove_file(&temporary).ok();
-        error.into()
+        fault
     })
 }
 
