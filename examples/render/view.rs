@@ -16,21 +16,25 @@ pub(crate) fn choose(options: &Options, input: &Input) -> Result<View> {
     let bounds = bounds(input);
     let up = options.up.unwrap_or(input.up);
     let target = options.target.unwrap_or_else(|| bounds.center());
-    let eye = options.eye.unwrap_or_else(|| target + aside(up) * bounds.extent().length().max(1.0));
-    let (width, height) = options.size;
-    let view = View::look_at(eye, target, up)?.with_size(width, height)?;
-    let mut view = match options.ortho {
-        Some(height) => view.with_orthographic(height)?,
-        None => view.with_perspective(options.fov.to_radians())?,
+    let distance = bounds.extent().length();
+    let eye = options.eye.unwrap_or_else(|| target + aside(up) * distance);
+    let with_options = |view: View| -> Result<View> {
+        let view = view.with_size(options.size.0, options.size.1)?;
+        Ok(match options.ortho {
+            Some(height) => view.with_orthographic(height)?,
+            None => view.with_perspective(options.fov.to_radians())?,
+        })
     };
+    let mut view = with_options(View::look_at(eye, target, up)?)?;
     if options.eye.is_none() {
-        let fitted = view.clone().fitted(&bounds);
-        // With a target of one's own only the distance is fitted.
-        let eye = target + (fitted.eye() - bounds.center());
-        let moved = View::look_at(eye, target, up)?.with_size(width, height)?;
-        view = match options.ortho {
-            Some(height) => moved.with_orthographic(height)?,
-            None => moved.with_perspective(options.fov.to_radians())?,
+        let fitted = frame(view, input, &bounds);
+        // A target of one's own stays in the middle; only the distance is fitted.
+        view = match options.target {
+            Some(target) => {
+                let distance = (fitted.eye() - bounds.center()).length();
+                with_options(View::look_at(target + aside(up) * distance, target, up)?)?
+            }
+            None => with_options(fitted)?,
         };
     }
     match options.near {
@@ -45,6 +49,17 @@ fn bounds(input: &Input) -> Bounds {
     let inner = input.scene.inner_bounds(STRAYS);
     let is_blown_up = all.extent().max_element() > STRAY_FACTOR * inner.extent().max_element();
     if is_blown_up && inner.extent().max_element() > 0.0 { inner } else { all }
+}
+
+/// A view of all records in the box to look at.
+fn frame(view: View, input: &Input, bounds: &Bounds) -> View {
+    let scene = &input.scene;
+    let balls = (0..scene.records.len())
+        .map(|index| (scene.position(index), f64::from(scene.records[index].radius)));
+    let is_inside = |(center, _): &(DVec3, f64)| {
+        bounds.min.cmple(*center).all() && center.cmple(bounds.max).all()
+    };
+    view.framing(balls.filter(is_inside))
 }
 
 /// A direction from the front, a little from the right and from above.

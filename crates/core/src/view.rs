@@ -162,31 +162,43 @@ impl View {
     /// An orthographic view gets a new height; the near plane is set as in [`View::look_at`].
     #[must_use]
     pub fn fitted(self, bounds: &Bounds) -> Self {
-        if bounds.is_empty() || !(bounds.min.is_finite() && bounds.max.is_finite()) {
+        if bounds.is_empty() {
             return self;
         }
-        let center = bounds.center();
-        let corners = bounds.corners().map(|corner| self.to_camera(corner - center));
+        self.framing(bounds.corners().into_iter().map(|corner| (corner, 0.0)))
+    }
+
+    /// As [`View::fitted`], for balls in world coordinates. Those that are not finite do not count.
+    ///
+    /// The balls touch a margin of the picture, on both sides of it where they bind.
+    #[must_use]
+    pub fn framing(self, balls: impl IntoIterator<Item = (DVec3, f64)>) -> Self {
+        let finite = |(center, radius): &(DVec3, f64)| center.is_finite() && radius.is_finite();
+        let mut balls = balls.into_iter().filter(finite).peekable();
+        let Some(&(start, _)) = balls.peek() else {
+            return self;
+        };
         let aspect = f64::from(self.width) / f64::from(self.height);
-        let mut view = self;
+        let tan = match self.projection {
+            Projection::Perspective { fov_y } => (fov_y * 0.5).tan() * FIT_SHARE,
+            Projection::Orthographic { .. } => 0.0,
+        };
+        let frame = Frame::around(balls.map(|(c, r)| (self.to_camera(c - start), r)), aspect, tan);
+        let (middle, mut view) = (frame.middle(), self);
         let distance = match view.projection {
-            Projection::Perspective { fov_y } => {
-                let tan = (fov_y * 0.5).tan() * FIT_SHARE;
-                let needed = |p: &DVec3| p.y.abs().max(p.x.abs() / aspect) / tan - p.z;
-                corners.iter().map(needed).fold(0.0, f64::max)
-            }
+            Projection::Perspective { .. } => frame.depth() - frame.apex([tan * aspect, tan]),
             Projection::Orthographic { .. } => {
-                let needed = |p: &DVec3| p.y.abs().max(p.x.abs() / aspect);
-                let height = 2.0 / FIT_SHARE * corners.iter().map(needed).fold(0.0, f64::max);
+                let height = frame.sides().y.max(frame.sides().x / aspect) / FIT_SHARE;
                 if height.is_normal() {
                     view.projection = Projection::Orthographic { height };
                 }
-                bounds.extent().length()
+                frame.sides().length()
             }
         };
-        // A box without extent gives no scale: one unit is as good as any other.
-        let distance = if distance.is_normal() { distance } else { 1.0 };
-        view.eye = center - view.forward * distance;
+        // Balls without extent give no scale: one unit is as good as any other.
+        let distance = if distance.is_normal() && distance > 0.0 { distance } else { 1.0 };
+        let back = frame.depth() - distance;
+        view.eye = start + view.right * middle.x + view.up * middle.y + view.forward * back;
         view.near = distance * NEAR_SHARE;
         view
     }
@@ -290,6 +302,63 @@ impl View {
     }
 }
 
+/// How far balls reach to the right, left, top and bottom of a picture, in camera coordinates.
+///
+/// With the slope `t` of a side plane, a ball around `p` lies inside of the plane through the eye `e`
+/// if `p.x + r sqrt(1 + t²) - t p.z <= e.x - t e.z`. So the largest left side is all there is to know
+/// of the balls; it is kept for each of the four sides, with slope 0 if rays are parallel.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    /// The largest left side for the right and top planes, and for the left and bottom planes.
+    above: DVec2,
+    below: DVec2,
+    /// The largest and the least extent along the line of sight.
+    far: f64,
+    near: f64,
+}
+
+impl Frame {
+    fn around(balls: impl Iterator<Item = (DVec3, f64)>, aspect: f64, tan: f64) -> Self {
+        let slope = DVec2::new(tan * aspect, tan);
+        let stretch = (slope * slope + 1.0).map(f64::sqrt);
+        let mut frame = Self {
+            above: DVec2::NEG_INFINITY,
+            below: DVec2::NEG_INFINITY,
+            far: f64::NEG_INFINITY,
+            near: f64::INFINITY,
+        };
+        for (center, radius) in balls {
+            let inward = stretch * radius - slope * center.z;
+            frame.above = frame.above.max(inward + center.truncate());
+            frame.below = frame.below.max(inward - center.truncate());
+            frame.far = frame.far.max(center.z + radius);
+            frame.near = frame.near.min(center.z - radius);
+        }
+        frame
+    }
+
+    /// The place that has as much on its right as on its left.
+    fn middle(&self) -> DVec2 {
+        (self.above - self.below) * 0.5
+    }
+
+    /// The depth of the middle.
+    fn depth(&self) -> f64 {
+        self.near + (self.far - self.near) * 0.5
+    }
+
+    /// The largest depth from which everything is seen, with these slopes.
+    fn apex(&self, slopes: [f64; 2]) -> f64 {
+        let reach = (self.above + self.below) * -0.5 / DVec2::from(slopes);
+        reach.min_element()
+    }
+
+    /// The lengths along right, up and forward, where rays are parallel.
+    fn sides(&self) -> DVec3 {
+        (self.above + self.below).extend(self.far - self.near)
+    }
+}
+
 /// The unit vector along `vector`, however long or short it is; `None` if it has no length.
 fn direction(vector: DVec3) -> Option<DVec3> {
     let largest = vector.abs().max_element();
@@ -356,6 +425,26 @@ mod tests {
             let reach = reach.into_iter().fold(0.0, f64::max);
             assert!((reach - FIT_SHARE).abs() < 1e-9, "{reach}");
         }
+    }
+
+    #[test]
+    fn framed_balls_lie_in_the_view_wherever_they_are() {
+        let ball = |i: u32| (DVec3::new(1e7 + f64::from(i % 7), f64::from(i % 3), 5.0), 0.5);
+        for view in [front(), front().with_orthographic(1.0).unwrap()] {
+            let view = view.orbited(DVec3::ZERO, 1.0, 0.4).framing((0..50).map(ball));
+            let half = view.pixel_size() * 512.0;
+            for (center, radius) in (0..50).map(ball) {
+                let p = view.to_camera(center - view.eye());
+                let (slope, stretch) =
+                    if view.is_perspective() { (half, half.hypot(1.0)) } else { (0.0, 1.0) };
+                let room = if view.is_perspective() { slope * p.z } else { half };
+                assert!(p.x.abs().max(p.y.abs()) + radius * stretch <= room);
+                assert!(p.z - radius > view.near());
+            }
+        }
+        assert_eq!(front().framing([(DVec3::NAN, 1.0)]), front());
+        let point = front().framing([(DVec3::ONE, 0.0)]);
+        assert_eq!(point.eye(), DVec3::new(1.0, 1.0, 2.0));
     }
 
     #[test]

@@ -1,10 +1,11 @@
 /*!
 A radius for records that come without one.
 
-Half the distance between neighbors makes neighboring spheres touch. So the estimate is the median,
-over a sample of the records, of the distance to the nearest other record, times a constant near one
-half that closes most of the gaps in scanned surfaces. The sample is small and evenly spread over
-the records, and each distance is found by looking at all of them: no structure is needed.
+Half the distance between neighbors makes neighboring spheres touch; scanned surfaces, whose points
+are less regular, need more to look closed. So the estimate is the median, over a sample of the
+records, of the distance to the nearest other record, times a constant between the two. The sample is
+small and evenly spread over the records, and each distance is found by looking at all of them: no
+structure is needed.
 */
 
 use puncta_core::{Record, Sphere};
@@ -16,7 +17,7 @@ const DISTANCES_MAX: usize = 1 << 28;
 const SAMPLES: (usize, usize) = (512, 16);
 
 /// The share of the distance to the nearest neighbor that makes a good radius.
-const SHARE: f32 = 0.75;
+const SHARE: f32 = 0.9;
 
 /// A radius with which these records look like what they are a sample of; records that coincide do
 /// not count. It is 1 where there are no two different positions.

@@ -135,7 +135,7 @@ mod tests {
         fs::write(&path, "old").unwrap();
         let fault = replace(&path, |file| {
             file.write_all(&[0; 1 << 17])?;
-            Err(io::Error::other("the disk is full"))
+            Err(io::Error::other("the disk is full").into())
         });
         let error = fault.unwrap_err().in_file("a.xyz").to_string();
         assert_eq!(error, "a.xyz: the disk is full");

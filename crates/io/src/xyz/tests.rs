@@ -47,7 +47,7 @@ mod plain {
     fn names_that_are_no_elements_have_an_estimated_radius() {
         let loaded = read("2\n\nA 0 0 0\nQ 2 0 0\n");
         assert_eq!(loaded.scene.attributes.elements, None);
-        assert_eq!(radii(&loaded), [1.5; 2]);
+        assert_eq!(radii(&loaded), [1.8; 2]);
         assert!(loaded.report.warnings[0].starts_with("the file gives no radius"));
     }
 
