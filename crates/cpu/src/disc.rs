@@ -197,6 +197,24 @@ mod tests {
         }
     }
 
+    /// As large and as near as it gets, in many places: here the rim needs `f64`.
+    #[test]
+    fn the_largest_and_nearest_discs_are_exact_too() {
+        for place in 0..60 {
+            let (turn, radius) = (f64::from(place) * 0.7, 0.01 * 1.3_f64.powi(place));
+            let distance = (DEPTH_RADII_MIN + 0.3) * radius;
+            let eye = DVec3::new(distance, 0.0, 0.0);
+            let fov_y = 2.0 * (50.0 / (63.0 * 16.0_f64)).atan();
+            let view = View::look_at(eye, DVec3::ZERO, DVec3::Z).unwrap();
+            let view = view.with_size(100, 100).unwrap().with_perspective(fov_y).unwrap();
+            let camera = Camera::new(&view, DVec3::ZERO);
+            let at = 0.2 * radius * DVec3::new(0.0, turn.cos() - 0.3, turn.sin());
+            let center = camera.place(at);
+            let disc = Disc::new(&camera, center, radius).expect("it is small and far enough");
+            check(&camera, &disc, center, radius);
+        }
+    }
+
     fn check(camera: &Camera, disc: &Disc, center: DVec3, radius: f64) {
         let mut covered = 0;
         for row in 0..100 {
@@ -208,9 +226,10 @@ mod tests {
                 for lane in (0..LANES).filter(|lane| left.doubts >> lane & 1 == 0) {
                     let ray = camera.ray(f64::from(column) + lane as f64, f64::from(row));
                     let exact = camera.depth(ray, center, radius);
-                    // 1e-5 of a radius: a quarter of what is promised for a disc of 2.5 pixels.
-                    let grown = camera.depth(ray, center, radius * (1.0 + 1e-5)).is_some();
-                    let shrunk = camera.depth(ray, center, radius * (1.0 - 1e-5)).is_some();
+                    // Half of 1e-4 pixel for the largest disc, in radii.
+                    let hair = 0.5 * 1e-4 / RADIUS_PIXELS_MAX;
+                    let grown = camera.depth(ray, center, radius * (1.0 + hair)).is_some();
+                    let shrunk = camera.depth(ray, center, radius * (1.0 - hair)).is_some();
                     assert!(if id[lane] == 3 { grown } else { !shrunk });
                     if let (Some(exact), 3) = (exact, id[lane]) {
                         let error = (f64::from(depth[lane]) - exact).abs();
