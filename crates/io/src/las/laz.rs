@@ -27,7 +27,10 @@ use super::{
     chunks::{Chunks, OFFSET_BYTES},
     header::{Header, field},
 };
-use crate::error::{ErrorKind, Fault, Place};
+use crate::{
+    ReadOptions,
+    error::{ErrorKind, Fault, Place},
+};
 use laz::{
     DecompressionSelection, LazItemRecordBuilder, LazItemType, LazVlr,
     record::{
@@ -66,6 +69,8 @@ pub(super) struct Decoder<'a, R> {
     records: Box<dyn RecordDecompressor<R> + 'a>,
     vlr: LazVlr,
     compression: Compression,
+    /// The fields to decode, where they are layers.
+    selection: DecompressionSelection,
     length: u64,
     record_bytes: usize,
     count: u64,
@@ -78,8 +83,13 @@ pub(super) struct Decoder<'a, R> {
     left: u64,
 }
 
-impl<'a, R: Read + Seek + Send + Sync + 'a> Decoder<'a, R> {
-    pub(super) fn new(mut stream: R, length: u64, header: &Header) -> Result<Self, Fault> {
+impl<'a, R: Read + Seek + 'a> Decoder<'a, R> {
+    pub(super) fn new(
+        mut stream: R,
+        length: u64,
+        header: &Header,
+        options: &ReadOptions,
+    ) -> Result<Self, Fault> {
         let points_start = header.points_start;
         let (vlr, compression) = read_record(&mut stream, header)?;
         let bytes = length.saturating_sub(points_start);
@@ -101,6 +111,7 @@ impl<'a, R: Read + Seek + Send + Sync + 'a> Decoder<'a, R> {
             records,
             vlr,
             compression,
+            selection: select(options),
             length,
             record_bytes: usize::try_from(header.record_bytes).unwrap_or(usize::MAX),
             count: header.count,
@@ -122,7 +133,8 @@ impl<'a, R: Read + Seek + Send + Sync + 'a> Decoder<'a, R> {
         self.chunks.warning()
     }
 
-    /// Decodes as many points as `block` holds; returns the byte at which their chunk starts.
+    /// Decodes as many points as `block` holds; returns the byte at which the last chunk of them
+    /// starts.
     pub(super) fn fill(&mut self, block: &mut [u8]) -> Result<u64, Fault> {
         guard(self.start, || self.decode(block))?;
         Ok(self.start)
@@ -167,7 +179,7 @@ impl<'a, R: Read + Seek + Send + Sync + 'a> Decoder<'a, R> {
         self.records
             .set_fields_from(self.vlr.items())
             .map_err(|error| failure(self.start, error))?;
-        self.records.set_selection(DecompressionSelection::all());
+        self.records.set_selection(self.selection);
         Ok(())
     }
 
@@ -203,6 +215,20 @@ impl<'a, R: Read + Seek + Send + Sync + 'a> Decoder<'a, R> {
         let kind = ErrorKind::Truncated { what: "the layers of a chunk".into(), needed, left };
         Err(Fault { place: Some(Place::Byte(sizes_start)), kind })
     }
+}
+
+/// The fields that are kept. (The return number comes with x and y.)
+fn select(options: &ReadOptions) -> DecompressionSelection {
+    type Select = fn(DecompressionSelection) -> DecompressionSelection;
+    let fields: [(&str, Select); 4] = [
+        ("intensity", DecompressionSelection::decompress_intensity),
+        ("classification", DecompressionSelection::decompress_classification),
+        ("scan_angle", DecompressionSelection::decompress_scan_angle),
+        ("point_source", DecompressionSelection::decompress_point_source_id),
+    ];
+    let wanted = fields.into_iter().filter(|(name, _)| options.wants(name));
+    let always = DecompressionSelection::base().decompress_z().decompress_rgb();
+    wanted.fold(always, |selection, (_, select)| select(selection))
 }
 
 /// Finds the variable length record of LAZ and checks it against the point format.

@@ -48,7 +48,7 @@ pub(crate) fn read(
     let header = Header::read(&mut stream, length)?;
     let mut points;
     if header.compressed {
-        let mut decoder = laz::Decoder::new(stream, length, &header)?;
+        let mut decoder = laz::Decoder::new(stream, length, &header, options)?;
         points = Points::new(options, &header, decoder.count_to_reserve())?;
         decoder.warning().into_iter().for_each(|warning| points.warn(warning));
         read_blocks(&header, &mut points, |block| Ok((decoder.fill(block)?, 0)))?;

@@ -176,6 +176,17 @@ fn only_wanted_scalars_are_kept() {
     let names: Vec<_> = scene.attributes.scalars.iter().map(|s| s.name.as_str()).collect();
     assert_eq!(names, ["classification"]);
     assert_eq!(scene.attributes.scalars[0].values[..5], [2.0, 3.0, 4.0, 5.0, 2.0]);
+    // In layers only some fields are decoded at all; that must not change the others.
+    let file = compress(&write(10, (1, 4), 5, 256), Chunking::Fixed(170));
+    let all = read(&file).unwrap().scene;
+    for name in ["intensity", "classification", "return_number", "scan_angle", "point_source"] {
+        let options = ReadOptions::default().radius(0.1);
+        let options = options.scalars(Scalars::Named(vec![name.into()]));
+        let scene = options.read_bytes("a.laz", &file).unwrap().scene;
+        assert_eq!(scene.records, all.records);
+        assert_eq!(scene.attributes.colors, all.attributes.colors);
+        assert_eq!(scene.attributes.scalars, [all.scalar(name).unwrap().clone()]);
+    }
 }
 
 #[test]
