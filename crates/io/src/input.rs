@@ -22,14 +22,14 @@ impl<'a> Input<'a> {
         Self { stream, byte: 0, line: 0, within_line: false, length }
     }
 
+    /// The offset of the next byte.
+    pub(crate) fn byte(&self) -> u64 {
+        self.byte
+    }
+
     /// The place of the next byte.
     pub(crate) fn at_byte(&self) -> Place {
         Place::Byte(self.byte)
-    }
-
-    /// The number of bytes that were read.
-    pub(crate) fn position(&self) -> u64 {
-        self.byte
     }
 
     /// The place of the line that was read last, wholly or in part.

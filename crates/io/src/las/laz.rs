@@ -3,9 +3,9 @@ LAZ: point records, compressed with an arithmetic coder.
 
 A variable length record says how the points are compressed. They come in chunks, each of which
 starts with a raw record. In formats 0 to 5 the coded bytes of the other points follow; in formats 6
-to 10 there follow the sizes of layers, then the layers, one for each group of fields. A table behind
-the chunks, whose place stands in front of them, has the bytes of each chunk, and its points if the
-chunks vary in size.
+to 10 there follow the sizes of layers, then the layers, one for each group of fields. A table
+behind the chunks, whose place stands in front of them, has the bytes of each chunk, and its points
+if the chunks vary in size.
 
 # Hazards
 
@@ -248,6 +248,10 @@ fn read_record(
         let is_laz = head[2..18].starts_with(LazVlr::USER_ID.as_bytes())
             && u16::from_le_bytes(field(&head, 18)) == LazVlr::RECORD_ID;
         at += RECORD_HEADER as u64;
+        if is_laz && at + u64::from(bytes) > header.points_start {
+            let what = format!("the record of LAZ must end before byte {}", header.points_start);
+            return Err(Fault::invalid(Place::Byte(at), what, at + u64::from(bytes)));
+        }
         if is_laz {
             let mut data = vec![0; usize::from(bytes)];
             stream.read_exact(&mut data)?;

@@ -162,6 +162,18 @@ fn all_formats_are_read_plain_and_compressed() {
 }
 
 #[test]
+fn a_file_without_chunks_is_read() {
+    let chunked = compress(&write(3, (1, 2), 5, 256), Chunking::Fixed(50_000));
+    let start = u32_at(&chunked, 96);
+    let record = start - 34 - 4 * 6;
+    assert_eq!(chunked[record], 2);
+    let mut whole = chunked;
+    whole[record] = 1;
+    whole.drain(start..start + 8);
+    check(&whole, 3);
+}
+
+#[test]
 fn old_versions_are_read() {
     for minor in 0..=4 {
         check(&write(1, (1, minor), 0, 256), 1);

@@ -7,8 +7,8 @@ of values; cells in the forms before and since version 5.0, and all else, are pa
 section `POINT_DATA` gives columns:
 
 * an array of one value for each point becomes a scalar of its name, and one of three the scalars
-  `name_x`, `name_y`, `name_z` and, but for normals, its length as `name`; other arrays of up to nine
-  values become `name_0`, `name_1` and so on. Tensors are passed over;
+  `name_x`, `name_y`, `name_z` and, but for normals, its length as `name`; other arrays of up to
+  nine values become `name_0`, `name_1` and so on. Tensors are passed over;
 * an array `radius` of one value gives the radii;
 * `COLOR_SCALARS`, or else the first array of 3 or 4 bytes for each point, gives the colors.
 
@@ -16,8 +16,8 @@ section `POINT_DATA` gives columns:
 
 Points come before their data, so columns are added when the positions are there already, and leave
 out what was skipped. Binary values are big-endian and start behind the line that announces them;
-what follows them may stand on the same line, and lines may end in `\r\n`. `long` is taken as 8 bytes,
-as on all systems but one. Numbers of text may be parted by any white space. Integers of a scalar
+what follows them may stand on the same line, and lines may end in `\r\n`. `long` is taken as 8
+bytes, as on all systems but one. Numbers of text may be parted by any white space. Integers of a scalar
 that `f32` does not hold exactly are a warning.
 
 Source: VTK File Formats (Kitware, for versions up to 4.2), and the reader of the library,

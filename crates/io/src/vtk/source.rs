@@ -102,7 +102,7 @@ impl<'i, 'a> Source<'i, 'a> {
         if self.is_text {
             self.input.at_line()
         } else {
-            Place::Byte(self.input.position().saturating_sub(self.word.len() as u64))
+            Place::Byte(self.input.byte().saturating_sub(self.word.len() as u64))
         }
     }
 
@@ -231,7 +231,7 @@ impl<'i, 'a> Source<'i, 'a> {
             let per_block = (BLOCK / width.max(1) / 8 * 8).max(8) as u64;
             let mut left = count;
             while left > 0 {
-                let start = self.input.position();
+                let start = self.input.byte();
                 let tuples = left.min(per_block);
                 values.clear();
                 self.block(kind, tuples * width as u64, &mut values, what)?;
