@@ -21,6 +21,8 @@ it. It lies among the data, so offsets are at most some 3 `e` long even if these
 the rest.
 */
 
+mod late;
+
 use crate::{
     ReadOptions,
     error::{ErrorKind, Fault, Place, Problem},
@@ -199,12 +201,23 @@ impl<'a> Builder<'a> {
         place: Place,
         value: impl FnOnce() -> String,
     ) -> Result<(), Fault> {
+        self.report_skip(problem, place, value)?;
+        self.ids.get_or_insert_with(|| (0..self.records.len() as u64).map(to_id).collect());
+        self.rows += 1;
+        Ok(())
+    }
+
+    /// Reports a row that cannot be used; an error if reading is strict.
+    fn report_skip(
+        &mut self,
+        problem: Problem,
+        place: Place,
+        value: impl FnOnce() -> String,
+    ) -> Result<(), Fault> {
         if self.options.strict {
             let kind = ErrorKind::Record { problem, value: value() };
             return Err(Fault { place: Some(place), kind });
         }
-        self.ids.get_or_insert_with(|| (0..self.records.len() as u64).map(to_id).collect());
-        self.rows += 1;
         match self.report.skipped.iter_mut().find(|skipped| skipped.problem == problem) {
             Some(skipped) => skipped.count += 1,
             None => {
@@ -337,7 +350,7 @@ pub(crate) fn is_radius(radius: f64) -> bool {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
-fn to_f32(x: f64) -> f32 {
+pub(crate) fn to_f32(x: f64) -> f32 {
     x as f32
 }
 

@@ -14,18 +14,32 @@ pub(crate) struct Input<'a> {
     stream: Stream<'a>,
     byte: u64,
     line: u64,
+    /// Whether the line counted last has not been read to its end.
+    within_line: bool,
     /// The number of bytes from start to end, unless the stream is being decompressed.
     length: Option<u64>,
 }
 
 impl<'a> Input<'a> {
     pub(crate) fn new(stream: Box<dyn BufRead + 'a>, length: Option<u64>) -> Self {
-        Self { stream: Stream::Forward(Forward::new(stream)), byte: 0, line: 0, length }
+        Self {
+            stream: Stream::Forward(Forward::new(stream)),
+            byte: 0,
+            line: 0,
+            within_line: false,
+            length,
+        }
     }
 
     /// An input that can [`jump`](Self::jump) anywhere.
     pub(crate) fn seekable(stream: Box<dyn Seekable + 'a>, length: u64) -> Self {
-        Self { stream: Stream::Seekable(stream), byte: 0, line: 0, length: Some(length) }
+        Self {
+            stream: Stream::Seekable(stream),
+            byte: 0,
+            line: 0,
+            within_line: false,
+            length: Some(length),
+        }
     }
 
     /// Makes the next `count` bytes ones that [`jump`](Self::jump) can come back to as long as
@@ -67,7 +81,7 @@ impl<'a> Input<'a> {
         Place::Byte(self.byte)
     }
 
-    /// The place of the line that was read last.
+    /// The place of the line that was read last, wholly or in part.
     pub(crate) fn at_line(&self) -> Place {
         Place::Line(self.line)
     }
@@ -77,12 +91,14 @@ impl<'a> Input<'a> {
         self.length.map(|length| length.saturating_sub(self.byte))
     }
 
-    /// Reads the next line into `line`, without its end; false at the end of the file.
+    /// Reads the next line, or what is left of a line whose words were read, into `line`, without
+    /// its end; false at the end of the file.
     pub(crate) fn line(&mut self, line: &mut Vec<u8>) -> Result<bool, Fault> {
         line.clear();
         let limit = LINE_MAX as u64 + 1;
         let read = self.stream.by_ref().take(limit).read_until(b'\n', line);
-        self.line += 1;
+        self.line += u64::from(!self.within_line);
+        self.within_line = false;
         let read =
             read.map_err(|error| Fault { place: Some(self.at_line()), kind: error.into() })?;
         self.byte += read as u64;
@@ -103,6 +119,44 @@ impl<'a> Input<'a> {
         }
         let kind = ErrorKind::Truncated { what: what.to_owned(), needed: 1, left: 0 };
         Err(Fault { place: Some(self.at_line()), kind })
+    }
+
+    /// Reads the next word into `word`; false at the end of the file.
+    ///
+    /// White space ends a word and parts words, over lines and without a limit on their length.
+    pub(crate) fn word(&mut self, word: &mut Vec<u8>) -> Result<bool, Fault> {
+        word.clear();
+        loop {
+            let buffer = match self.stream.fill_buf() {
+                Ok(buffer) => buffer,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(error) => {
+                    return Err(Fault { place: Some(self.at_line()), kind: error.into() });
+                }
+            };
+            let mut used = 0;
+            for &byte in buffer {
+                if byte.is_ascii_whitespace() && !word.is_empty() {
+                    break;
+                }
+                self.line += u64::from(!self.within_line);
+                self.within_line = byte != b'\n';
+                if !byte.is_ascii_whitespace() {
+                    word.push(byte);
+                }
+                used += 1;
+            }
+            let is_end = used < buffer.len() || buffer.is_empty();
+            self.stream.consume(used);
+            self.byte += used as u64;
+            if word.len() > LINE_MAX {
+                let what = format!("a word must be shorter than {LINE_MAX} bytes");
+                return Err(Fault::invalid(self.at_line(), what, "longer"));
+            }
+            if is_end {
+                return Ok(!word.is_empty());
+            }
+        }
     }
 
     /// Fills `buffer`; it is an error if the file ends first. `what` names what it should hold.
@@ -155,5 +209,35 @@ impl<'a> Input<'a> {
         }
         let kind = ErrorKind::Truncated { what: what.to_owned(), needed: count, left: skipped };
         Err(Fault { place: Some(start), kind })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::BufReader;
+
+    #[test]
+    fn words_and_lines_share_the_count_of_lines() {
+        let text = b"one  two\n\n three\tfour \r\nfive\nsix";
+        for capacity in [1, 2, 3, 100] {
+            let stream = BufReader::with_capacity(capacity, &text[..]);
+            let mut input = Input::new(Box::new(stream), None);
+            let mut found = Vec::new();
+            let mut next = |words: bool| {
+                let more = if words { input.word(&mut found) } else { input.line(&mut found) };
+                let text = String::from_utf8(found.clone()).unwrap();
+                more.unwrap().then_some((text, input.line, input.byte))
+            };
+            let some = |text: &str, line, byte| Some((text.to_owned(), line, byte));
+            assert_eq!(next(true), some("one", 1, 3));
+            assert_eq!(next(true), some("two", 1, 8));
+            assert_eq!(next(false), some("", 1, 9));
+            assert_eq!(next(true), some("three", 3, 16));
+            assert_eq!(next(false), some("\tfour ", 3, 24));
+            assert_eq!(next(false), some("five", 4, 29));
+            assert_eq!(next(true), some("six", 5, 32));
+            assert_eq!(next(true), None);
+        }
     }
 }

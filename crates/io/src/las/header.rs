@@ -105,7 +105,7 @@ impl Header {
         })
     }
 
-    /// Whether the colors, and other fields, are those of the formats of version 1.4.
+    /// Whether the fields lie as in the formats of version 1.4.
     pub(super) fn is_extended(&self) -> bool {
         self.format >= 6
     }

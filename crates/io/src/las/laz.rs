@@ -3,9 +3,9 @@ LAZ: point records, compressed with an arithmetic coder.
 
 A variable length record says how the points are compressed. They come in chunks, each of which
 starts with a raw record. In formats 0 to 5 the coded bytes of the other points follow; in formats 6
-to 10 there follow the sizes of layers, then the layers, one for each group of fields. A table behind
-the chunks, whose place stands in front of them, has the bytes of each chunk, and its points if the
-chunks vary in size.
+to 10 there follow the sizes of layers, then the layers, one for each group of fields. A table
+behind the chunks, whose place stands in front of them, has the bytes of each chunk, and its points
+if the chunks vary in size.
 
 # Hazards
 
@@ -27,7 +27,10 @@ use super::{
     chunks::{Chunks, OFFSET_BYTES},
     header::{Header, field},
 };
-use crate::error::{ErrorKind, Fault, Place};
+use crate::{
+    ReadOptions,
+    error::{ErrorKind, Fault, Place},
+};
 use laz::{
     DecompressionSelection, LazItemRecordBuilder, LazItemType, LazVlr,
     record::{
@@ -66,6 +69,8 @@ pub(super) struct Decoder<'a, R> {
     records: Box<dyn RecordDecompressor<R> + 'a>,
     vlr: LazVlr,
     compression: Compression,
+    /// The fields to decode, where they are layers.
+    selection: DecompressionSelection,
     length: u64,
     record_bytes: usize,
     count: u64,
@@ -78,8 +83,13 @@ pub(super) struct Decoder<'a, R> {
     left: u64,
 }
 
-impl<'a, R: Read + Seek + Send + Sync + 'a> Decoder<'a, R> {
-    pub(super) fn new(mut stream: R, length: u64, header: &Header) -> Result<Self, Fault> {
+impl<'a, R: Read + Seek + 'a> Decoder<'a, R> {
+    pub(super) fn new(
+        mut stream: R,
+        length: u64,
+        header: &Header,
+        options: &ReadOptions,
+    ) -> Result<Self, Fault> {
         let points_start = header.points_start;
         let (vlr, compression) = read_record(&mut stream, header)?;
         let bytes = length.saturating_sub(points_start);
@@ -101,6 +111,7 @@ impl<'a, R: Read + Seek + Send + Sync + 'a> Decoder<'a, R> {
             records,
             vlr,
             compression,
+            selection: select(options),
             length,
             record_bytes: usize::try_from(header.record_bytes).unwrap_or(usize::MAX),
             count: header.count,
@@ -122,7 +133,8 @@ impl<'a, R: Read + Seek + Send + Sync + 'a> Decoder<'a, R> {
         self.chunks.warning()
     }
 
-    /// Decodes as many points as `block` holds; returns the byte at which their chunk starts.
+    /// Decodes as many points as `block` holds; returns the byte at which the last chunk of them
+    /// starts.
     pub(super) fn fill(&mut self, block: &mut [u8]) -> Result<u64, Fault> {
         guard(self.start, || self.decode(block))?;
         Ok(self.start)
@@ -167,7 +179,7 @@ impl<'a, R: Read + Seek + Send + Sync + 'a> Decoder<'a, R> {
         self.records
             .set_fields_from(self.vlr.items())
             .map_err(|error| failure(self.start, error))?;
-        self.records.set_selection(DecompressionSelection::all());
+        self.records.set_selection(self.selection);
         Ok(())
     }
 
@@ -205,6 +217,20 @@ impl<'a, R: Read + Seek + Send + Sync + 'a> Decoder<'a, R> {
     }
 }
 
+/// The fields that are kept. (The return number comes with x and y.)
+fn select(options: &ReadOptions) -> DecompressionSelection {
+    type Select = fn(DecompressionSelection) -> DecompressionSelection;
+    let fields: [(&str, Select); 4] = [
+        ("intensity", DecompressionSelection::decompress_intensity),
+        ("classification", DecompressionSelection::decompress_classification),
+        ("scan_angle", DecompressionSelection::decompress_scan_angle),
+        ("point_source", DecompressionSelection::decompress_point_source_id),
+    ];
+    let wanted = fields.into_iter().filter(|(name, _)| options.wants(name));
+    let always = DecompressionSelection::base().decompress_z().decompress_rgb();
+    wanted.fold(always, |selection, (_, select)| select(selection))
+}
+
 /// Finds the variable length record of LAZ and checks it against the point format.
 fn read_record(
     stream: &mut (impl Read + Seek),
@@ -222,6 +248,10 @@ fn read_record(
         let is_laz = head[2..18].starts_with(LazVlr::USER_ID.as_bytes())
             && u16::from_le_bytes(field(&head, 18)) == LazVlr::RECORD_ID;
         at += RECORD_HEADER as u64;
+        if is_laz && at + u64::from(bytes) > header.points_start {
+            let what = format!("the record of LAZ must end before byte {}", header.points_start);
+            return Err(Fault::invalid(Place::Byte(at), what, at + u64::from(bytes)));
+        }
         if is_laz {
             let mut data = vec![0; usize::from(bytes)];
             stream.read_exact(&mut data)?;

@@ -10,9 +10,9 @@ Kept are positions, colors where the format has them, and the scalars `intensity
 it needs the digits of an `f64`. Points that are marked as withheld are kept as well. There is one
 frame, and no radius.
 
-Hazards: colors of 8 bits in fields of 16 (see `points`), counts and offsets that are wrong, and LAZ,
-where nothing but the decoder can tell whether bytes are sound (see `laz`). A box in the header that
-does not hold the points is a warning.
+Hazards: colors of 8 bits in fields of 16 (see `points`), counts and offsets that are wrong, and
+LAZ, where nothing but the decoder can tell whether bytes are sound (see `laz`). A box in the header
+that does not hold the points is a warning.
 
 Source: LAS Specification 1.4 R15, ASPRS 2019.
 */
@@ -48,7 +48,7 @@ pub(crate) fn read(
     let header = Header::read(&mut stream, length)?;
     let mut points;
     if header.compressed {
-        let mut decoder = laz::Decoder::new(stream, length, &header)?;
+        let mut decoder = laz::Decoder::new(stream, length, &header, options)?;
         points = Points::new(options, &header, decoder.count_to_reserve())?;
         decoder.warning().into_iter().for_each(|warning| points.warn(warning));
         read_blocks(&header, &mut points, |block| Ok((decoder.fill(block)?, 0)))?;

@@ -162,6 +162,18 @@ fn all_formats_are_read_plain_and_compressed() {
 }
 
 #[test]
+fn a_file_without_chunks_is_read() {
+    let chunked = compress(&write(3, (1, 2), 5, 256), Chunking::Fixed(50_000));
+    let start = u32_at(&chunked, 96);
+    let record = start - 34 - 4 * 6;
+    assert_eq!(chunked[record], 2);
+    let mut whole = chunked;
+    whole[record] = 1;
+    whole.drain(start..start + 8);
+    check(&whole, 3);
+}
+
+#[test]
 fn old_versions_are_read() {
     for minor in 0..=4 {
         check(&write(1, (1, minor), 0, 256), 1);
@@ -176,6 +188,17 @@ fn only_wanted_scalars_are_kept() {
     let names: Vec<_> = scene.attributes.scalars.iter().map(|s| s.name.as_str()).collect();
     assert_eq!(names, ["classification"]);
     assert_eq!(scene.attributes.scalars[0].values[..5], [2.0, 3.0, 4.0, 5.0, 2.0]);
+    // In layers only some fields are decoded at all; that must not change the others.
+    let file = compress(&write(10, (1, 4), 5, 256), Chunking::Fixed(170));
+    let all = read(&file).unwrap().scene;
+    for name in ["intensity", "classification", "return_number", "scan_angle", "point_source"] {
+        let options = ReadOptions::default().radius(0.1);
+        let options = options.scalars(Scalars::Named(vec![name.into()]));
+        let scene = options.read_bytes("a.laz", &file).unwrap().scene;
+        assert_eq!(scene.records, all.records);
+        assert_eq!(scene.attributes.colors, all.attributes.colors);
+        assert_eq!(scene.attributes.scalars, [all.scalar(name).unwrap().clone()]);
+    }
 }
 
 #[test]
