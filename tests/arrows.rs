@@ -1,5 +1,11 @@
 //! The arrows between the crates, as `docs/architecture.md` draws them.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::cast_possible_truncation,
+    reason = "a test may panic, and its numbers are small"
+)]
+
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
 /// What each crate may use of the others, in its code and in its tests.

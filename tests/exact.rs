@@ -1,6 +1,12 @@
 //! Promise 1: against a brute-force reference in `f64`, ids and depths differ nowhere but where the
 //! answer hangs on a hair.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::cast_possible_truncation,
+    reason = "a test may panic, and its numbers are small"
+)]
+
 use glam::{DVec3, Vec3};
 use naive::Verdict;
 use puncta::{
@@ -181,6 +187,7 @@ fn records_without_a_picture_do_no_harm() {
         Sphere::new([0.3, 0.0, 0.0], 1e-38),
         Sphere::new([1e38, 1e38, 1e38], 1e30),
         Sphere::new([-3e38, 0.0, 0.0], 3e38),
+        Sphere::new([-3e38, 3e38, -3e38], 3e38),
         Sphere::new([0.5, 0.0, 0.0], 0.2),
     ];
     let mut scene = Scene::new(odd.to_vec());
@@ -188,7 +195,10 @@ fn records_without_a_picture_do_no_harm() {
     let view = view.with_size(64, 64).unwrap();
     let picture = render(&mut scene, &view, 2);
     assert!(naive::compare(&scene, &view, &picture).is_ok());
-    assert!(picture.original_ids(&scene).contains(&4));
+    assert!(picture.original_ids(&scene).contains(&5));
+    // A depth that f32 cannot hold is not seen, and does not tie with what is not there.
+    scene.origin = DVec3::new(0.0, 0.0, -1e39);
+    assert_eq!(render(&mut scene, &view, 2).covered_pixels(), 0);
 }
 
 #[test]

@@ -1,5 +1,11 @@
 //! The example `render` as its users meet it: options, files, errors and exit codes.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::cast_possible_truncation,
+    reason = "a test may panic, and its numbers are small"
+)]
+
 use std::{
     fs,
     path::{Path, PathBuf},

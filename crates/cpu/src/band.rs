@@ -5,13 +5,16 @@ use crate::{
     disc::{Disc, LANES, Target},
 };
 use glam::DVec3;
-use puncta_core::{Batch, Record, Scene, VisibleBrick};
+use puncta_core::{Batch, Record, VisibleBrick};
 use std::ops::RangeInclusive;
 
 /// Some rows of a picture. A row has `stride` pixels, of which the last ones are not seen: so eight
 /// pixels can always be drawn at once.
 #[derive(Debug)]
 pub(crate) struct Band<'a> {
+    pub(crate) camera: &'a Camera,
+    /// The original ids of the records: of two at equal depth the lower one is shown.
+    pub(crate) ids: Option<&'a [u32]>,
     pub(crate) first_row: i64,
     pub(crate) stride: usize,
     pub(crate) depth: &'a mut [f32],
@@ -46,7 +49,6 @@ impl Band<'_> {
     /// Draws the records of these bricks, as far as they lie in this band.
     pub(crate) fn draw<R: Record>(
         &mut self,
-        camera: &Camera,
         batch: &Batch<'_, R>,
         rows_of_bricks: &[RangeInclusive<i64>],
     ) {
@@ -57,15 +59,15 @@ impl Band<'_> {
             let records = batch.bricks[*index as usize].records.clone();
             let members = &batch.scene.records[records.start as usize..records.end as usize];
             for (id, record) in records.zip(members) {
-                self.draw_sphere(camera, batch.scene, record, id);
+                self.draw_sphere(record, id);
             }
         }
     }
 
-    fn draw_sphere<R: Record>(&mut self, camera: &Camera, scene: &Scene<R>, record: &R, id: u32) {
-        let center = camera.place(record.position().as_dvec3());
+    fn draw_sphere<R: Record>(&mut self, record: &R, id: u32) {
+        let center = self.camera.place(record.position().as_dvec3());
         let radius = f64::from(record.radius());
-        let Some(mut screen) = camera.screen_box(center, radius) else {
+        let Some(mut screen) = self.camera.screen_box(center, radius) else {
             return;
         };
         let first = (*screen.rows.start()).max(self.first_row);
@@ -76,53 +78,37 @@ impl Band<'_> {
         }
         let nearest = center.z - radius - 1e-6 * (center.z.abs() + radius);
         let ball = Ball { center, radius, nearest, id };
-        // Of two records at equal depth the one with the lower original id is shown.
-        let wins = |id: u32, other: u32| scene.id(id) < scene.id(other);
-        match Disc::new(camera, center, radius) {
-            Some(disc) => self.draw_disc(camera, &disc, &ball, &screen, wins),
-            None => self.draw_exact(camera, &ball, &screen, wins),
+        match Disc::new(self.camera, center, radius) {
+            Some(disc) => self.draw_disc(&disc, &ball, &screen),
+            None => self.draw_exact(&ball, &screen),
         }
     }
 
     /// Draws a small sphere, eight pixels at a time.
-    fn draw_disc(
-        &mut self,
-        camera: &Camera,
-        disc: &Disc,
-        ball: &Ball,
-        screen: &ScreenBox,
-        wins: impl Fn(u32, u32) -> bool,
-    ) {
+    fn draw_disc(&mut self, disc: &Disc, ball: &Ball, screen: &ScreenBox) {
         for row in screen.rows.clone() {
-            let row_of_disc = disc.row(camera, row as f64);
+            let row_of_disc = disc.row(self.camera, row as f64);
             for column in screen.columns.clone().step_by(LANES) {
-                let Some(mut target) = self.target(row, column) else {
+                let camera = self.camera;
+                let Some(mut target) = self.target(row, column, ball.id) else {
                     return;
                 };
-                let left = disc.draw(camera, row_of_disc, column as f64, &mut target, ball.id);
+                let left = disc.draw(camera, row_of_disc, column as f64, &mut target);
                 for lane in bits(left.ties) {
-                    if wins(ball.id, target.id[lane as usize]) {
-                        target.id[lane as usize] = ball.id;
-                    }
+                    self.break_tie((row, column + i64::from(lane)), ball.id);
                 }
                 for lane in bits(left.doubts) {
-                    self.draw_pixel(camera, ball, (row, column + i64::from(lane)), &wins);
+                    self.draw_pixel(ball, (row, column + i64::from(lane)));
                 }
             }
         }
     }
 
     /// Draws any sphere, pixel by pixel in `f64`.
-    fn draw_exact(
-        &mut self,
-        camera: &Camera,
-        ball: &Ball,
-        screen: &ScreenBox,
-        wins: impl Fn(u32, u32) -> bool,
-    ) {
+    fn draw_exact(&mut self, ball: &Ball, screen: &ScreenBox) {
         for row in screen.rows.clone() {
             for column in screen.columns.clone() {
-                self.draw_pixel(camera, ball, (row, column), &wins);
+                self.draw_pixel(ball, (row, column));
             }
         }
     }
@@ -130,35 +116,40 @@ impl Band<'_> {
     /// Draws one pixel of a sphere in `f64`.
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
-    fn draw_pixel(
-        &mut self,
-        camera: &Camera,
-        ball: &Ball,
-        (row, column): (i64, i64),
-        wins: impl Fn(u32, u32) -> bool,
-    ) {
+    fn draw_pixel(&mut self, ball: &Ball, (row, column): (i64, i64)) {
         let pixel = self.pixel(row, column);
-        let (old, old_id) = (self.depth[pixel], self.id[pixel]);
+        let old = self.depth[pixel];
         if f64::from(old) < ball.nearest {
             return;
         }
-        let ray = camera.ray(column as f64, row as f64);
-        if let Some(depth) = camera.depth(ray, ball.center, ball.radius) {
+        let ray = self.camera.ray(column as f64, row as f64);
+        if let Some(depth) = self.camera.depth(ray, ball.center, ball.radius) {
             let depth = depth as f32;
-            if depth < old || depth == old && wins(ball.id, old_id) {
+            if depth < old {
                 self.depth[pixel] = depth;
                 self.id[pixel] = ball.id;
+            } else if depth == old && depth.is_finite() {
+                self.break_tie((row, column), ball.id);
             }
+        }
+    }
+
+    /// Decides between what is seen at a pixel and a record of equal depth.
+    fn break_tie(&mut self, (row, column): (i64, i64), id: u32) {
+        let pixel = self.pixel(row, column);
+        let original = |id: u32| self.ids.map_or(id, |ids| ids[id as usize]);
+        if original(id) < original(self.id[pixel]) {
+            self.id[pixel] = id;
         }
     }
 
     /// Eight pixels of this band.
     #[inline]
-    fn target(&mut self, row: i64, column: i64) -> Option<Target<'_>> {
+    fn target(&mut self, row: i64, column: i64, new_id: u32) -> Option<Target<'_>> {
         let pixel = self.pixel(row, column);
         let depth = self.depth.get_mut(pixel..)?.first_chunk_mut()?;
         let id = self.id.get_mut(pixel..)?.first_chunk_mut()?;
-        Some(Target { depth, id })
+        Some(Target { depth, id, new_id })
     }
 
     #[inline]

@@ -23,7 +23,7 @@ The surface is seen if `z >= near`.
 
 # The screen box of a sphere
 
-After Mara & McGuire, *2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere*, JCGT
+After Mara and McGuire, *2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere*, JCGT
 2(2), 2013. On each screen axis the silhouette is bounded by the two tangents from the eye to a
 circle in the plane of that axis and the forward axis. With `t² = cx² + cz² - r²`, their slopes are
 `(cx cz ± r t) / (cz² - r²)` while the sphere lies in front of the eye's plane; a tangent point in

@@ -132,7 +132,6 @@ impl Disc {
         row: DiscRow,
         column: f64,
         target: &mut Target<'_>,
-        id: u32,
     ) -> Unsettled {
         let lanes = f32x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         let old = f32x8::new(*target.depth);
@@ -157,7 +156,7 @@ impl Disc {
         let doubts = covered & q.simd_lt(f32x8::splat(self.doubt));
         let wins = !doubts & covered & depth.simd_lt(old);
         *target.depth = wins.select(depth, old).to_array();
-        *target.id = wins.select(u32x8::splat(id), u32x8::new(*target.id)).to_array();
+        *target.id = wins.select(u32x8::splat(target.new_id), u32x8::new(*target.id)).to_array();
         Unsettled {
             ties: (!doubts & covered & depth.simd_eq(old)).to_bitmask(),
             doubts: doubts.to_bitmask(),
@@ -170,6 +169,8 @@ impl Disc {
 pub(crate) struct Target<'a> {
     pub(crate) depth: &'a mut [f32; LANES],
     pub(crate) id: &'a mut [u32; LANES],
+    /// The record that is to be seen where it is nearer.
+    pub(crate) new_id: u32,
 }
 
 #[cfg(test)]
@@ -221,8 +222,8 @@ mod tests {
             let row_of_disc = disc.row(camera, f64::from(row));
             for column in (0..96).step_by(LANES) {
                 let (mut depth, mut id) = ([f32::INFINITY; LANES], [9; LANES]);
-                let mut target = Target { depth: &mut depth, id: &mut id };
-                let left = disc.draw(camera, row_of_disc, f64::from(column), &mut target, 3);
+                let mut target = Target { depth: &mut depth, id: &mut id, new_id: 3 };
+                let left = disc.draw(camera, row_of_disc, f64::from(column), &mut target);
                 for lane in (0..LANES).filter(|lane| left.doubts >> lane & 1 == 0) {
                     let ray = camera.ray(f64::from(column) + lane as f64, f64::from(row));
                     let exact = camera.depth(ray, center, radius);

@@ -42,7 +42,7 @@ pub fn draw_legend(image: &mut Image, map: &ColorMap, range: [f64; 2], title: &s
         }
     }
     for (mark, label) in labels.iter().enumerate() {
-        let y = top + ((1.0 - share(mark)) * (bar_height - 1) as f64).round().abs() as usize;
+        let y = top + (MARKS - 1 - mark) * (bar_height - 1) / (MARKS - 1);
         (0..line / 4).for_each(|x| sheet.mix(left + bar_width + x, y, ink, 255));
         sheet.write(left + bar_width + line / 2, y - line / 2, label);
     }

@@ -65,14 +65,16 @@ impl<R: Record> Renderer<R> for CpuRenderer {
 
     fn draw(&mut self, batch: &Batch<'_, R>) -> Result<(), Error> {
         let drawing = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
-        let camera = Camera::new(&drawing.view, batch.scene.origin);
-        let rows_of_bricks = rows_of_bricks(&camera, batch);
+        let camera = &Camera::new(&drawing.view, batch.scene.origin);
+        let originals = batch.scene.attributes.ids.as_deref();
+        let rows_of_bricks = rows_of_bricks(camera, batch);
         let stride = stride(drawing.view.width());
         let depths = drawing.depth.par_chunks_mut(stride * BAND_ROWS);
         let ids = drawing.id.par_chunks_mut(stride * BAND_ROWS);
         depths.zip(ids).enumerate().with_max_len(1).for_each(|(band, (depth, id))| {
             let first_row = (band * BAND_ROWS) as i64;
-            Band { first_row, stride, depth, id }.draw(&camera, batch, &rows_of_bricks);
+            Band { camera, ids: originals, first_row, stride, depth, id }
+                .draw(batch, &rows_of_bricks);
         });
         drawing.progress += Progress::of(batch.bricks, batch.visible);
         Ok(())

@@ -34,6 +34,9 @@ use puncta_core::{Attributes, MAX_RECORDS, Scalar, Scene, Sphere};
 /// How many rows of double precision wait for the origin to be chosen.
 const HEAD: usize = 32_768;
 
+/// The largest coordinate: the difference of any two of them is one that `f32` can hold.
+const COORDINATE_MAX: f64 = f32::MAX as f64 * 0.25;
+
 /// What the coordinates of a file were before they became `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Precision {
@@ -161,7 +164,7 @@ impl<'a> Builder<'a> {
 
     /// Adds a row, or skips it if it cannot be used.
     pub(crate) fn push(&mut self, row: &Row<'_>, place: Place) -> Result<(), Fault> {
-        if !row.position.iter().all(|x| x.is_finite() && x.abs() <= f64::from(f32::MAX)) {
+        if !row.position.iter().all(|x| x.is_finite() && x.abs() <= COORDINATE_MAX) {
             let [x, y, z] = row.position;
             return self.skip(Problem::Position, place, || format!("({x}, {y}, {z})"));
         }
@@ -437,7 +440,7 @@ mod tests {
         let mut builder = Builder::new(&options, Precision::Double, &Columns::default());
         let row = Row { position: [0.0, f64::INFINITY, 0.0], ..Row::default() };
         let error = builder.push(&row, Place::Line(3)).unwrap_err().in_file("a.xyz");
-        let text = "a.xyz, line 3: a position that is not finite: (0, inf, 0)";
+        let text = "a.xyz, line 3: a position that cannot be stored: (0, inf, 0)";
         assert_eq!(error.to_string(), text);
     }
 }

@@ -106,7 +106,7 @@ pub enum ErrorKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Problem {
-    /// A coordinate is NaN, infinite, or outside of what `f32` can hold.
+    /// A coordinate is NaN, infinite, or beyond 8.5e37, so that `f32` cannot hold offsets.
     Position,
     /// The radius is NaN, infinite, zero or negative.
     Radius,
@@ -119,7 +119,7 @@ pub enum Problem {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Position => "a position that is not finite",
+            Self::Position => "a position that cannot be stored",
             Self::Radius => "a radius that is not positive and finite",
             Self::Columns => "a wrong number of columns",
             Self::Number => "not a number",

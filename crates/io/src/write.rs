@@ -42,8 +42,8 @@ fn writer(path: &Path) -> Result<WriteScene, Fault> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     match extension.as_str() {
         "xyz" | "extxyz" => Ok(|file, scene| Ok(xyz::write(file, scene)?)),
-        "ply" => Ok(|file, scene| ply::write(file, scene)),
-        "mmpld" => Ok(|file, scene| mmpld::write(file, scene)),
+        "ply" => Ok(ply::write),
+        "mmpld" => Ok(mmpld::write),
         other => {
             let what =
                 "the name of a file to write must end in .xyz, .extxyz, .ply or .mmpld".to_owned();
@@ -70,10 +70,9 @@ fn replace(
         file.sync_all()?;
         Ok(fs::rename(&temporary, path)?)
     };
-    create().map_err(|fault: Fault| {
+    create().inspect_err(|_| {
         // What is left of the file is of no use; that it cannot be removed is not the first error.
         fs::remove_file(&temporary).ok();
-        fault
     })
 }
 

@@ -307,7 +307,7 @@ END
         let options = ReadOptions::default().strict(true);
         let text = atom(" CA ", "1", "  10.000     nan  10.000", "");
         let error = load(&options, &text).unwrap_err().to_string();
-        assert_eq!(error, "a.pdb, line 1: a position that is not finite: (10, NaN, 10)");
+        assert_eq!(error, "a.pdb, line 1: a position that cannot be stored: (10, NaN, 10)");
         let text = atom(" CA ", "1", "  10.000  1O.000  10.000", "");
         let error = load(&options, &text).unwrap_err().to_string();
         let value = "\"  10.000  1O.000  10.000\"";

@@ -301,6 +301,6 @@ fn rows_that_cannot_be_used_leave_all_columns() {
         }
         let error = ReadOptions::default().strict(true).read_bytes("a.vtk", &bytes).unwrap_err();
         let text = error.to_string();
-        assert!(text.ends_with("a position that is not finite: (NaN, 1, 1)"), "{text}");
+        assert!(text.ends_with("a position that cannot be stored: (NaN, 1, 1)"), "{text}");
     }
 }

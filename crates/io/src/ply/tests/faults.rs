@@ -185,7 +185,7 @@ fn rows_that_cannot_be_used_are_counted() {
     let bytes = join(&header("binary_little_endian", &lines), &nan);
     let strict = ReadOptions::default().strict(true).read_bytes("a.ply", &bytes).unwrap_err();
     let byte = bytes.len() - 12;
-    let wanted = format!("a.ply, byte {byte}: a position that is not finite: (NaN, 0, 0)");
+    let wanted = format!("a.ply, byte {byte}: a position that cannot be stored: (NaN, 0, 0)");
     assert_eq!(strict.to_string(), wanted);
 }
 
