@@ -37,6 +37,11 @@ The block reaches from -1 to 1 along x and y, and its surface is z = 0; the plum
 With more atoms the same event is drawn more finely. `cut=quarter` opens block and front towards
 positive x and negative y, `cut=none` does not. The scalar `temperature` is in kelvin.
 
+**`hall`** is a laser scan of an industrial hall, 60 m by 24 m and 10.5 m high, in survey
+coordinates around (350000, 5800000, 110): density falls off with the distance from seven scanners,
+and things throw shadows. `noise` is the error of distances in meters. Of all points, `strays` lie
+up to 50 lengths of the hall away. Records have colors and the scalar `intensity`, 0 to 1.
+
 # The same for ever
 
 The same spec gives the same records and attributes, bit by bit: on every machine, in chunks of any
@@ -46,6 +51,7 @@ does not grow with `n`, so a [`Source`] of a thousand million records needs no m
 
 mod ablation;
 mod cube;
+mod hall;
 mod lattice;
 mod noise;
 mod random;
@@ -58,7 +64,7 @@ use puncta_core::{Scalar, Scene, Source, Sphere};
 use spec::Spec;
 use std::{convert::Infallible, fmt, str::FromStr};
 
-static KINDS: [Kind; 3] = [cube::KIND, lattice::KIND, ablation::KIND];
+static KINDS: [Kind; 4] = [cube::KIND, lattice::KIND, ablation::KIND, hall::KIND];
 
 /// A synthetic scene in the making: a [`Source`] of its records.
 ///
@@ -77,6 +83,7 @@ enum Making {
     Cube(cube::Cube),
     Lattice(lattice::Lattice),
     Ablation(Box<ablation::Ablation>),
+    Hall(Box<hall::Hall>),
 }
 
 /// A scene that makes one record after the other.
@@ -160,6 +167,7 @@ impl FromStr for Generator {
         let scene = match spec.kind().name {
             "lattice" => Making::Lattice(lattice::Lattice::new(&spec)),
             "ablation" => Making::Ablation(Box::new(ablation::Ablation::new(&spec))),
+            "hall" => Making::Hall(Box::new(hall::Hall::new(&spec))),
             _ => Making::Cube(cube::Cube::new(&spec)),
         };
         Ok(Self { spec, scene, made: 0 })
@@ -189,6 +197,7 @@ impl Source for Generator {
             Making::Cube(making) => append(making, scene, count),
             Making::Lattice(making) => append(making, scene, count),
             Making::Ablation(making) => append(making.as_mut(), scene, count),
+            Making::Hall(making) => append(making.as_mut(), scene, count),
         }
         self.made += count as u64;
         Ok(count)
@@ -207,7 +216,10 @@ impl Source for Generator {
 impl Making {
     /// The world position that rows are relative to.
     const fn origin(&self) -> DVec3 {
-        DVec3::ZERO
+        match self {
+            Self::Hall(_) => hall::ORIGIN,
+            _ => DVec3::ZERO,
+        }
     }
 
     /// Whether there are colors and elements, and the name of the scalar.
@@ -219,6 +231,7 @@ impl Making {
             Self::Cube(_) => of::<cube::Cube>(),
             Self::Lattice(_) => of::<lattice::Lattice>(),
             Self::Ablation(_) => of::<ablation::Ablation>(),
+            Self::Hall(_) => of::<hall::Hall>(),
         }
     }
 }
