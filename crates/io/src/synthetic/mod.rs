@@ -42,6 +42,10 @@ coordinates around (350000, 5800000, 110): density falls off with the distance f
 and things throw shadows. `noise` is the error of distances in meters. Of all points, `strays` lie
 up to 50 lengths of the hall away. Records have colors and the scalar `intensity`, 0 to 1.
 
+**`halo`** is matter as cosmology finds it, in a periodic box from -50 to 50 Mpc/h: halos in halos
+whose masses follow a power law, filaments, and voids. The scalar `density` is the logarithm to base
+10 of the density in units of the mean.
+
 # The same for ever
 
 The same spec gives the same records and attributes, bit by bit: on every machine, in chunks of any
@@ -52,6 +56,7 @@ does not grow with `n`, so a [`Source`] of a thousand million records needs no m
 mod ablation;
 mod cube;
 mod hall;
+mod halo;
 mod lattice;
 mod noise;
 mod random;
@@ -64,7 +69,7 @@ use puncta_core::{Scalar, Scene, Source, Sphere};
 use spec::Spec;
 use std::{convert::Infallible, fmt, str::FromStr};
 
-static KINDS: [Kind; 4] = [cube::KIND, lattice::KIND, ablation::KIND, hall::KIND];
+static KINDS: [Kind; 5] = [cube::KIND, lattice::KIND, ablation::KIND, hall::KIND, halo::KIND];
 
 /// A synthetic scene in the making: a [`Source`] of its records.
 ///
@@ -84,6 +89,7 @@ enum Making {
     Lattice(lattice::Lattice),
     Ablation(Box<ablation::Ablation>),
     Hall(Box<hall::Hall>),
+    Halo(Box<halo::Halo>),
 }
 
 /// A scene that makes one record after the other.
@@ -168,6 +174,7 @@ impl FromStr for Generator {
             "lattice" => Making::Lattice(lattice::Lattice::new(&spec)),
             "ablation" => Making::Ablation(Box::new(ablation::Ablation::new(&spec))),
             "hall" => Making::Hall(Box::new(hall::Hall::new(&spec))),
+            "halo" => Making::Halo(Box::new(halo::Halo::new(&spec))),
             _ => Making::Cube(cube::Cube::new(&spec)),
         };
         Ok(Self { spec, scene, made: 0 })
@@ -198,6 +205,7 @@ impl Source for Generator {
             Making::Lattice(making) => append(making, scene, count),
             Making::Ablation(making) => append(making.as_mut(), scene, count),
             Making::Hall(making) => append(making.as_mut(), scene, count),
+            Making::Halo(making) => append(making.as_mut(), scene, count),
         }
         self.made += count as u64;
         Ok(count)
@@ -232,6 +240,7 @@ impl Making {
             Self::Lattice(_) => of::<lattice::Lattice>(),
             Self::Ablation(_) => of::<ablation::Ablation>(),
             Self::Hall(_) => of::<hall::Hall>(),
+            Self::Halo(_) => of::<halo::Halo>(),
         }
     }
 }
