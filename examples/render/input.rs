@@ -27,10 +27,34 @@ pub(crate) struct Input {
     pub(crate) up: DVec3,
     /// The scalar to color by if there is nothing better.
     pub(crate) scalar: Option<String>,
+    /// How to look at the built-in scene.
+    pub(crate) outlook: Option<Outlook>,
 }
 
+/// A view and colors that suit a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outlook {
+    pub(crate) eye: DVec3,
+    pub(crate) target: DVec3,
+    /// In degrees.
+    pub(crate) fov: f64,
+    pub(crate) colormap: &'static str,
+    pub(crate) range: [f64; 2],
+}
+
+/// The crater and the plume above it, by temperature.
+const BUILT_IN_OUTLOOK: Outlook = Outlook {
+    eye: DVec3::new(4.6, -4.1, 2.3),
+    target: DVec3::new(0.0, 0.0, 0.62),
+    fov: 32.0,
+    colormap: "inferno",
+    range: [-900.0, 5500.0],
+};
+
 pub(crate) fn read(options: &Options) -> Result<Input> {
-    let name = options.input.as_deref().unwrap_or(BUILT_IN);
+    let Some(name) = options.input.as_deref() else {
+        return Ok(Input { outlook: Some(BUILT_IN_OUTLOOK), ..generate(BUILT_IN, options)? });
+    };
     if Generator::is_spec(name) && !Path::new(name).exists() {
         generate(name, options)
     } else {
@@ -61,10 +85,11 @@ fn generate(spec: &str, options: &Options) -> Result<Input> {
     set_radii(&mut scene, options)?;
     let scalar = scene.attributes.scalars.first().map(|scalar| scalar.name.clone());
     let format = "generator".to_owned();
-    Ok(Input { name, format, scene, skipped: 0, notices: vec![], up, scalar })
+    Ok(Input { name, format, scene, skipped: 0, notices: vec![], up, scalar, outlook: None })
 }
 
 /// Gives the records of a generator the radii that were asked for.
+#[expect(clippy::cast_possible_truncation, reason = "radii are stored as f32")]
 fn set_radii(scene: &mut Scene<Sphere>, options: &Options) -> Result<()> {
     if options.radius.is_none() && options.radius_scale == 1.0 {
         return Ok(());
@@ -120,6 +145,7 @@ fn read_file(name: &str, options: &Options) -> Result<Input> {
         notices: skipped.chain(report.warnings.iter().cloned()).collect(),
         up: if format == Format::Las { DVec3::Z } else { DVec3::Y },
         scalar: None,
+        outlook: None,
         scene,
     })
 }

@@ -44,7 +44,7 @@ fn run(options: &Options) -> Result<()> {
     let picture = draw(&input.scene, &grid, &view, "frame", &mut statistics)?;
     statistics.describe(&input, &grid, &view, &picture);
     output::write_numbers(options, &input.scene, &picture)?;
-    let image = output::image(options, &input, &grid, &view, picture, &mut statistics)?;
+    let image = output::image(options, (&input, &grid), &view, picture, &mut statistics)?;
     statistics.time("write", || output::write_image(options, &image))?;
     statistics.finish(options)?;
     // Nobody may be listening any more; the files are written all the same.

@@ -2,7 +2,7 @@
 
 use clap::{Parser, ValueEnum};
 use glam::DVec3;
-use puncta::{Background, ColorMap};
+use puncta::{Background, ColorMap, io::synthetic::Generator};
 use std::{num::NonZero, path::PathBuf};
 
 /// Draws a particle or point file, or a synthetic scene, exactly, on the CPU.
@@ -57,9 +57,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "WHAT", default_value = "auto", value_parser = color_by)]
     pub(crate) color_by: ColorBy,
 
-    /// The color map for heights and scalars; _r after a name reverses it
-    #[arg(long, value_name = "NAME", default_value = "viridis")]
-    pub(crate) colormap: String,
+    /// The color map for heights and scalars, viridis by default; _r after a name reverses it
+    #[arg(long, value_name = "NAME")]
+    pub(crate) colormap: Option<String>,
 
     /// The values at the ends of the color map; nearly the range of the data by default
     #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
@@ -133,8 +133,14 @@ pub(crate) enum ColorBy {
 
 /// The generators and color maps, for the end of the help.
 fn after_help() -> String {
+    let kinds = Generator::kinds().iter().map(|kind| {
+        let keys: Vec<String> =
+            kind.keys.iter().map(|key| format!("{}={}", key.name, key.default)).collect();
+        format!("  {:<9} {}\n            {}\n", kind.name, kind.about, keys.join(", "))
+    });
+    let kinds: String = kinds.collect();
     let maps = ColorMap::names().collect::<Vec<_>>().join(", ");
-    format!("Color maps: {maps}.")
+    format!("Generators:\n{kinds}\nColor maps: {maps}.")
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {

@@ -8,7 +8,7 @@ use crate::{
 };
 use anyhow::{Context, Result};
 use puncta::{
-    Background, ColorMap, Coloring, Grid, Image, Picture, Scene, Shading, Sphere, View,
+    ColorMap, Coloring, Grid, Image, Picture, Scene, Shading, Sphere, View,
     cpu::draw_legend,
     io::{elements, npy, png},
     shade,
@@ -33,26 +33,26 @@ pub(crate) fn write_numbers(
 /// Makes the image, of a finer picture if pixels are to be averaged.
 pub(crate) fn image(
     options: &Options,
-    input: &Input,
-    grid: &Grid,
+    (input, grid): (&Input, &Grid),
     view: &View,
     picture: Picture,
     statistics: &mut Statistics,
 ) -> Result<Image> {
-    let map = ColorMap::named(&options.colormap)?;
+    let suited = input.outlook.map_or("viridis", |outlook| outlook.colormap);
+    let map = ColorMap::named(options.colormap.as_deref().unwrap_or(suited))?;
     let coloring = coloring(options, input, &map);
     let range = coloring.range(&input.scene)?;
     let factor = options.supersample;
     let picture = if factor > 1 {
         drop(picture);
-        let side = |side: u32| side.checked_mul(factor).unwrap_or(u32::MAX);
+        let side = |side: u32| side.saturating_mul(factor);
         let fine = view.clone().with_size(side(view.width()), side(view.height()));
         let fine = fine.context("too many samples: lower --supersample or --size")?;
         draw(&input.scene, grid, &fine, "supersample", statistics)?
     } else {
         picture
     };
-    let background = options.background.unwrap_or_else(Background::default);
+    let background = options.background.unwrap_or_default();
     let shading = Shading { coloring, background, supersample: factor, ..Shading::default() };
     let mut image = statistics.time("shade", || shade(&input.scene, view, &picture, &shading))?;
     if let (true, Some(range)) = (options.legend, range) {
@@ -73,7 +73,8 @@ pub(crate) fn place(options: &Options) -> String {
 
 fn coloring<'a>(options: &'a Options, input: &'a Input, map: &'a ColorMap) -> Coloring<'a> {
     let attributes = &input.scene.attributes;
-    let scalar = |name| Coloring::Scalar { name, map, range: options.range };
+    let range = options.range.or(input.outlook.map(|outlook| outlook.range));
+    let scalar = |name| Coloring::Scalar { name, map, range };
     let up = options.up.unwrap_or(input.up);
     let height = Coloring::Height { axis: up.normalize_or(input.up), map, range: options.range };
     let has_elements =

@@ -13,11 +13,16 @@ const STRAYS: f64 = 0.001;
 const STRAY_FACTOR: f64 = 3.0;
 
 pub(crate) fn choose(options: &Options, input: &Input) -> Result<View> {
+    if let (Some(outlook), None, None) = (&input.outlook, options.eye, options.target) {
+        let view = View::look_at(outlook.eye, outlook.target, input.up)?;
+        let view = view.with_size(options.size.0, options.size.1)?;
+        return Ok(view.with_perspective(outlook.fov.to_radians())?);
+    }
     let bounds = bounds(input);
     let up = options.up.unwrap_or(input.up);
     let target = options.target.unwrap_or_else(|| bounds.center());
-    let distance = bounds.extent().length();
-    let eye = options.eye.unwrap_or_else(|| target + aside(up) * distance);
+    let aside = aside(up, &bounds);
+    let eye = options.eye.unwrap_or_else(|| target + aside * bounds.extent().length());
     let with_options = |view: View| -> Result<View> {
         let view = view.with_size(options.size.0, options.size.1)?;
         Ok(match options.ortho {
@@ -32,7 +37,7 @@ pub(crate) fn choose(options: &Options, input: &Input) -> Result<View> {
         view = match options.target {
             Some(target) => {
                 let distance = (fitted.eye() - bounds.center()).length();
-                with_options(View::look_at(target + aside(up) * distance, target, up)?)?
+                with_options(View::look_at(target + aside * distance, target, up)?)?
             }
             None => with_options(fitted)?,
         };
@@ -62,11 +67,14 @@ fn frame(view: View, input: &Input, bounds: &Bounds) -> View {
     view.framing(balls.filter(is_inside))
 }
 
-/// A direction from the front, a little from the right and from above.
-fn aside(up: DVec3) -> DVec3 {
+/// A direction from the front, a little from the right and from above; more from above if the scene
+/// is flat.
+fn aside(up: DVec3, bounds: &Bounds) -> DVec3 {
     let up = up.normalize_or(DVec3::Y);
     let front = if up.z.abs() > 0.9 { DVec3::NEG_Y } else { DVec3::Z };
     let right = up.cross(front).normalize_or(DVec3::X);
     let front = right.cross(up);
-    (front + right * 0.45 + up * 0.4).normalize_or(DVec3::Z)
+    let height = up.abs().dot(bounds.extent());
+    let is_flat = height < 0.2 * bounds.extent().max_element();
+    (front + right * 0.45 + up * if is_flat { 0.8 } else { 0.4 }).normalize_or(DVec3::Z)
 }

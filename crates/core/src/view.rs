@@ -170,29 +170,40 @@ impl View {
 
     /// As [`View::fitted`], for balls in world coordinates. Those that are not finite do not count.
     ///
-    /// The balls touch a margin of the picture, on both sides of it where they bind.
+    /// The balls touch a margin of the picture at two opposite sides, and lie in the middle of the
+    /// other two, or nearly so.
     #[must_use]
-    pub fn framing(self, balls: impl IntoIterator<Item = (DVec3, f64)>) -> Self {
+    pub fn framing<I>(self, balls: I) -> Self
+    where
+        I: IntoIterator<Item = (DVec3, f64)>,
+        I::IntoIter: Clone,
+    {
         let finite = |(center, radius): &(DVec3, f64)| center.is_finite() && radius.is_finite();
-        let mut balls = balls.into_iter().filter(finite).peekable();
-        let Some(&(start, _)) = balls.peek() else {
+        let balls = balls.into_iter().filter(finite);
+        let Some((start, _)) = balls.clone().next() else {
             return self;
         };
+        let placed = balls.map(|(center, radius)| (self.to_camera(center - start), radius));
         let aspect = f64::from(self.width) / f64::from(self.height);
-        let tan = match self.projection {
-            Projection::Perspective { fov_y } => (fov_y * 0.5).tan() * FIT_SHARE,
-            Projection::Orthographic { .. } => 0.0,
+        let slopes = match self.projection {
+            Projection::Perspective { fov_y } => {
+                (fov_y * 0.5).tan() * FIT_SHARE * DVec2::new(aspect, 1.0)
+            }
+            Projection::Orthographic { .. } => DVec2::ZERO,
         };
-        let frame = Frame::around(balls.map(|(c, r)| (self.to_camera(c - start), r)), aspect, tan);
-        let (middle, mut view) = (frame.middle(), self);
-        let distance = match view.projection {
-            Projection::Perspective { .. } => frame.depth() - frame.apex([tan * aspect, tan]),
+        let frame = Frame::around(placed.clone(), slopes);
+        let mut view = self.clone();
+        let (middle, distance) = match view.projection {
+            Projection::Perspective { .. } => {
+                let back = frame.apex();
+                (frame.centered(placed, back), frame.depth() - back)
+            }
             Projection::Orthographic { .. } => {
                 let height = frame.sides().y.max(frame.sides().x / aspect) / FIT_SHARE;
                 if height.is_normal() {
                     view.projection = Projection::Orthographic { height };
                 }
-                frame.sides().length()
+                (frame.middle(), frame.sides().length())
             }
         };
         // Balls without extent give no scale: one unit is as good as any other.
@@ -302,6 +313,15 @@ impl View {
     }
 }
 
+/// The unit vector along `vector`, however long or short it is; `None` if it has no length.
+fn direction(vector: DVec3) -> Option<DVec3> {
+    let largest = vector.abs().max_element();
+    (largest > 0.0).then(|| {
+        let scaled = vector / largest;
+        scaled / scaled.length()
+    })
+}
+
 /// How far balls reach to the right, left, top and bottom of a picture, in camera coordinates.
 ///
 /// With the slope `t` of a side plane, a ball around `p` lies inside of the plane through the eye `e`
@@ -309,6 +329,7 @@ impl View {
 /// of the balls; it is kept for each of the four sides, with slope 0 if rays are parallel.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
+    slopes: DVec2,
     /// The largest left side for the right and top planes, and for the left and bottom planes.
     above: DVec2,
     below: DVec2,
@@ -318,17 +339,17 @@ struct Frame {
 }
 
 impl Frame {
-    fn around(balls: impl Iterator<Item = (DVec3, f64)>, aspect: f64, tan: f64) -> Self {
-        let slope = DVec2::new(tan * aspect, tan);
-        let stretch = (slope * slope + 1.0).map(f64::sqrt);
+    fn around(balls: impl Iterator<Item = (DVec3, f64)>, slopes: DVec2) -> Self {
+        let stretch = (slopes * slopes + 1.0).map(f64::sqrt);
         let mut frame = Self {
+            slopes,
             above: DVec2::NEG_INFINITY,
             below: DVec2::NEG_INFINITY,
             far: f64::NEG_INFINITY,
             near: f64::INFINITY,
         };
         for (center, radius) in balls {
-            let inward = stretch * radius - slope * center.z;
+            let inward = stretch * radius - slopes * center.z;
             frame.above = frame.above.max(inward + center.truncate());
             frame.below = frame.below.max(inward - center.truncate());
             frame.far = frame.far.max(center.z + radius);
@@ -337,7 +358,7 @@ impl Frame {
         frame
     }
 
-    /// The place that has as much on its right as on its left.
+    /// The place in the middle of those from which everything is seen.
     fn middle(&self) -> DVec2 {
         (self.above - self.below) * 0.5
     }
@@ -347,25 +368,33 @@ impl Frame {
         self.near + (self.far - self.near) * 0.5
     }
 
-    /// The largest depth from which everything is seen, with these slopes.
-    fn apex(&self, slopes: [f64; 2]) -> f64 {
-        let reach = (self.above + self.below) * -0.5 / DVec2::from(slopes);
-        reach.min_element()
+    /// The largest depth from which everything is seen.
+    fn apex(&self) -> f64 {
+        ((self.above + self.below) * -0.5 / self.slopes).min_element()
+    }
+
+    /// The place at depth `back` from which the picture lies in the middle, or nearly so.
+    ///
+    /// Where one pair of sides binds, the other leaves room. The eye is moved by as much as would put
+    /// balls at a middling depth into the middle, as far as everything is still seen.
+    fn centered(&self, balls: impl Iterator<Item = (DVec3, f64)>, back: f64) -> DVec2 {
+        let middle = self.middle();
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for (center, radius) in balls {
+            let depth = center.z - back;
+            low = low.min((center.truncate() - middle - radius) / depth);
+            high = high.max((center.truncate() - middle + radius) / depth);
+        }
+        let moved = middle + (low + high) * 0.5 * (self.depth() - back);
+        let room = (self.above + self.slopes * back, -self.below - self.slopes * back);
+        let is_seen = room.0.cmple(room.1);
+        DVec2::select(is_seen & moved.cmpeq(moved), moved.max(room.0).min(room.1), middle)
     }
 
     /// The lengths along right, up and forward, where rays are parallel.
     fn sides(&self) -> DVec3 {
         (self.above + self.below).extend(self.far - self.near)
     }
-}
-
-/// The unit vector along `vector`, however long or short it is; `None` if it has no length.
-fn direction(vector: DVec3) -> Option<DVec3> {
-    let largest = vector.abs().max_element();
-    (largest > 0.0).then(|| {
-        let scaled = vector / largest;
-        scaled / scaled.length()
-    })
 }
 
 #[cfg(test)]

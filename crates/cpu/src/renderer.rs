@@ -9,9 +9,11 @@ use puncta_core::{Batch, NO_RECORD, Picture, Progress, Record, Renderer, View};
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
 
-/// The number of rows of a band: enough that few spheres lie in two of them, and few enough that
-/// all threads have work and a band stays in the cache.
-const BAND_ROWS: usize = 32;
+/// The number of bands for each thread: some of them show more than others.
+const BANDS_PER_THREAD: usize = 4;
+
+/// The smallest number of rows of a band: a sphere is set up once for each band that it lies in.
+const BAND_ROWS_MIN: usize = 32;
 
 /// Draws spheres exactly, on all cores of the present rayon pool.
 ///
@@ -69,10 +71,12 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         let originals = batch.scene.attributes.ids.as_deref();
         let rows_of_bricks = rows_of_bricks(camera, batch);
         let stride = stride(drawing.view.width());
-        let depths = drawing.depth.par_chunks_mut(stride * BAND_ROWS);
-        let ids = drawing.id.par_chunks_mut(stride * BAND_ROWS);
+        let bands = rayon::current_num_threads() * BANDS_PER_THREAD;
+        let rows = (drawing.view.height() as usize).div_ceil(bands).max(BAND_ROWS_MIN);
+        let depths = drawing.depth.par_chunks_mut(stride * rows);
+        let ids = drawing.id.par_chunks_mut(stride * rows);
         depths.zip(ids).enumerate().with_max_len(1).for_each(|(band, (depth, id))| {
-            let first_row = (band * BAND_ROWS) as i64;
+            let first_row = (band * rows) as i64;
             Band { camera, ids: originals, first_row, stride, depth, id }
                 .draw(batch, &rows_of_bricks);
         });

@@ -112,10 +112,10 @@ fn round_side(eye: DVec3, ray: DVec3, axis: DVec3, radius: f64) -> Option<(f64, 
 }
 
 fn cylinder(eye: DVec3, ray: DVec3, axis: DVec3, radius: f64) -> Option<Hit> {
-    if let Some((distance, along, normal)) = round_side(eye, ray, axis, radius) {
-        if (0.0..=1.0).contains(&along) {
-            return Some(Hit { distance, normal });
-        }
+    if let Some((distance, along, normal)) = round_side(eye, ray, axis, radius)
+        && (0.0..=1.0).contains(&along)
+    {
+        return Some(Hit { distance, normal });
     }
     // A flat end: the one that faces the start of the ray.
     let steep = ray.dot(axis);

@@ -114,11 +114,11 @@ impl Scan {
         for near in &self.near {
             if out * near.out + up * near.up >= near.least {
                 let candidate = &self.parts[near.part];
-                if let Some(hit) = candidate.form.hit(self.eye, ray) {
-                    if hit.distance < first.distance {
-                        first = hit;
-                        part = Some(near.part);
-                    }
+                if let Some(hit) = candidate.form.hit(self.eye, ray)
+                    && hit.distance < first.distance
+                {
+                    first = hit;
+                    part = Some(near.part);
                 }
             }
         }
