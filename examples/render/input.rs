@@ -12,8 +12,8 @@ use puncta::{
 };
 use std::{path::Path, sync::Arc};
 
-/// What is drawn without an input: laser ablation, 400,000 atoms.
-const BUILT_IN: &str = "ablation:n=400000";
+/// What is drawn without an input: laser ablation, 1.5 million atoms.
+const BUILT_IN: &str = "ablation:n=1500000";
 
 /// A scene and what is known about it.
 #[derive(Debug)]
