@@ -162,6 +162,16 @@ fn what_cannot_be_drawn_is_an_error_that_names_it() {
 }
 
 #[test]
+fn a_look_straight_up_or_down_needs_no_up() {
+    let tool = Tool::new();
+    for eye in ["0,0,5", "0,0,-5", "0,5,0", "-5,0,0"] {
+        for input in ["cube:n=100", "lattice:n=100"] {
+            tool.succeed(&[input, "--eye", eye, "--target", "0,0,0", "--size", "9x9"]);
+        }
+    }
+}
+
+#[test]
 fn odd_options_are_errors_too() {
     let tool = Tool::new();
     tool.write("two.xyz", "2\n\nC 0 0 0\nO 2 0 0\n");

@@ -2,7 +2,7 @@
 
 use crate::{input::Input, options::Options};
 use anyhow::Result;
-use glam::DVec3;
+use glam::{DVec3, Vec3Swizzles};
 use puncta::{Bounds, View};
 
 /// The share of records on either side of an axis that a fitted view may leave out, if they are
@@ -19,8 +19,8 @@ pub(crate) fn choose(options: &Options, input: &Input) -> Result<View> {
         return Ok(view.with_perspective(outlook.fov.to_radians())?);
     }
     let bounds = bounds(input);
-    let up = options.up.unwrap_or(input.up);
     let target = options.target.unwrap_or_else(|| bounds.center());
+    let up = options.up.unwrap_or_else(|| usual_up(input.up, options.eye.map(|eye| target - eye)));
     let aside = aside(up, &bounds);
     let eye = options.eye.unwrap_or_else(|| target + aside * bounds.extent().length());
     let with_options = |view: View| -> Result<View> {
@@ -46,6 +46,12 @@ pub(crate) fn choose(options: &Options, input: &Input) -> Result<View> {
         Some(near) => Ok(view.with_near(near)?),
         None => Ok(view),
     }
+}
+
+/// The direction that is up unless the user says so; another axis for a look straight along it.
+fn usual_up(up: DVec3, sight: Option<DVec3>) -> DVec3 {
+    let is_along = |sight: DVec3| up.cross(sight).length() <= 1e-6 * sight.length();
+    if sight.is_some_and(is_along) { up.zxy() } else { up }
 }
 
 /// The box to look at: all records, unless strays make it many times as large as the rest.
