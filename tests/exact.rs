@@ -195,7 +195,7 @@ fn records_without_a_picture_do_no_harm() {
     let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
     let view = view.with_size(64, 64).unwrap();
     let picture = render(&mut scene, &view, 2);
-    assert!(naive::compare(&scene, &view, &picture).is_ok());
+    naive::compare(&scene, &view, &picture).unwrap();
     assert!(picture.original_ids(&scene).contains(&5));
     // A depth that f32 cannot hold is not seen, and does not tie with what is not there.
     scene.origin = DVec3::new(0.0, 0.0, -1e39);

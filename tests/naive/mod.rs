@@ -142,7 +142,8 @@ fn candidate(
     };
     let depth = middle.or_else(|| hits.iter().flatten().copied().reduce(f64::min))?;
     let near_hair = DEPTH_ULPS * ulp(view.near());
-    if depth < view.near() - near_hair {
+    // What f32 cannot hold is not seen either.
+    if depth < view.near() - near_hair || depth > f64::from(f32::MAX) {
         return None;
     }
     let is_beyond = depth > view.near() + near_hair;

@@ -20,7 +20,7 @@ const BAND_ROWS_MIN: usize = 32;
 /// At each pixel the picture shows the nearest point where its ray enters a sphere, at a view depth
 /// of at least [`View::near`]; of equal depths the one with the lower [`puncta_core::Scene::id`]. So
 /// a sphere that holds the camera is not drawn, and what the near plane cuts open is hollow. A sphere
-/// that covers no pixel's centre is not seen.
+/// that covers no pixel's centre is not seen, nor is a view depth beyond what `f32` holds.
 ///
 /// Against exact arithmetic, a silhouette is off by at most 1e-4 of a pixel and a view depth by at
 /// most 2⁻²² of itself. Set-up is in `f64`, from offsets relative to the eye; so neither a narrow
