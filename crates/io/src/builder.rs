@@ -18,7 +18,8 @@ be the centre and `e` the longest side of the data's box. On each axis the origi
 Rows of single precision are stored as they are and moved to the origin at the end, exactly. Rows of
 double precision must know the origin at once: the first ones wait until there are enough to choose
 it. It lies among the data, so offsets are at most some 3 `e` long even if these rows tell little of
-the rest.
+the rest. For them the box leaves out one in a hundred rows at each end of an axis: a few strays must
+not take the digits from all the others.
 */
 
 mod late;
@@ -29,10 +30,16 @@ use crate::{
     radius,
 };
 use glam::DVec3;
-use puncta_core::{Attributes, MAX_RECORDS, Scalar, Scene, Sphere};
+use puncta_core::{Attributes, MAX_RECORDS, Scalar, Scene, Sphere, inner_range};
 
 /// How many rows of double precision wait for the origin to be chosen.
 const HEAD: usize = 32_768;
+
+/// The share of rows of double precision that may be strays, at either end of an axis.
+const STRAYS: f64 = 0.01;
+
+/// How many warnings are kept; what a file can bring about without end is not worth more.
+const WARNINGS_MAX: usize = 100;
 
 /// The largest coordinate: the difference of any two of them is one that `f32` can hold.
 const COORDINATE_MAX: f64 = f32::MAX as f64 * 0.25;
@@ -174,9 +181,7 @@ impl<'a> Builder<'a> {
         {
             return self.skip(Problem::Radius, place, || radius.to_string());
         }
-        if self.records.len() == MAX_RECORDS {
-            return Err(ErrorKind::TooManyRecords(self.rows + 1).into());
-        }
+        self.check_count()?;
         self.radius_missing |= radius.is_none();
         let radius = radius.map_or(f32::NAN, |radius| to_f32(radius * self.options.radius_scale));
         let center = self.place(row.position);
@@ -205,9 +210,22 @@ impl<'a> Builder<'a> {
         value: impl FnOnce() -> String,
     ) -> Result<(), Fault> {
         self.report_skip(problem, place, value)?;
-        self.ids.get_or_insert_with(|| (0..self.records.len() as u64).map(to_id).collect());
+        self.check_count()?;
+        if self.ids.is_none() {
+            let mut ids = Vec::with_capacity(self.records.capacity());
+            ids.extend((0..self.records.len() as u64).map(to_id));
+            self.ids = Some(ids);
+        }
         self.rows += 1;
         Ok(())
+    }
+
+    /// Checks that the next row still has an id.
+    fn check_count(&self) -> Result<(), Fault> {
+        if self.rows < MAX_RECORDS as u64 {
+            return Ok(());
+        }
+        Err(ErrorKind::TooManyRecords(self.rows + 1).into())
     }
 
     /// Reports a row that cannot be used; an error if reading is strict.
@@ -234,8 +252,12 @@ impl<'a> Builder<'a> {
     /// Notes something that a user should know.
     pub(crate) fn warn(&mut self, warning: impl Into<String>) {
         let warning = warning.into();
-        if !self.report.warnings.contains(&warning) {
-            self.report.warnings.push(warning);
+        let warnings = &mut self.report.warnings;
+        if warnings.len() < WARNINGS_MAX && !warnings.contains(&warning) {
+            warnings.push(warning);
+            if warnings.len() == WARNINGS_MAX {
+                warnings.push("there are more warnings than these".to_owned());
+            }
         }
     }
 
@@ -263,7 +285,7 @@ impl<'a> Builder<'a> {
             Precision::Single => self.rebase(),
             Precision::Double => self.settle(),
         }
-        self.records.shrink_to_fit();
+        self.shrink();
         if self.radius_missing {
             let scale = self.options.radius_scale;
             let estimate = to_f32(f64::from(radius::estimate(&self.records)) * scale);
@@ -279,6 +301,15 @@ impl<'a> Builder<'a> {
         };
         let origin = self.origin.unwrap_or(DVec3::ZERO);
         Ok((Scene { origin, records: self.records, attributes }, self.report))
+    }
+
+    /// Gives back the room that no row took.
+    fn shrink(&mut self) {
+        self.records.shrink_to_fit();
+        self.ids.iter_mut().for_each(Vec::shrink_to_fit);
+        self.colors.iter_mut().for_each(Vec::shrink_to_fit);
+        self.elements.iter_mut().for_each(Vec::shrink_to_fit);
+        self.scalars.iter_mut().for_each(|(_, scalar)| scalar.values.shrink_to_fit());
     }
 
     /// The offset to store for a position; it may be put right later.
@@ -299,7 +330,7 @@ impl<'a> Builder<'a> {
     /// Chooses the origin from the positions that wait, and stores their offsets.
     fn settle(&mut self) {
         if self.origin.is_none() {
-            let origin = choose_origin(self.head.iter().copied());
+            let origin = choose_origin(|| self.head.iter().copied(), STRAYS);
             for (record, position) in self.records.iter_mut().zip(&self.head) {
                 record.center = offset(*position, origin);
             }
@@ -311,7 +342,7 @@ impl<'a> Builder<'a> {
     /// Moves absolute positions to an origin near them.
     fn rebase(&mut self) {
         let absolute = |sphere: &Sphere| sphere.center.map(f64::from);
-        let origin = choose_origin(self.records.iter().map(absolute));
+        let origin = choose_origin(|| self.records.iter().map(absolute), 0.0);
         if origin != DVec3::ZERO {
             for record in &mut self.records {
                 record.center = offset(record.center.map(f64::from), origin);
@@ -321,14 +352,13 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The origin for these positions: see the module's text.
-fn choose_origin(positions: impl Iterator<Item = [f64; 3]>) -> DVec3 {
-    let mut bounds = puncta_core::Bounds::EMPTY;
-    positions.for_each(|position| bounds.add(position.into()));
-    if bounds.is_empty() {
-        return DVec3::ZERO;
-    }
-    let (center, extent) = (bounds.center(), bounds.extent().max_element());
+/// The origin for these positions, of which a share at either end of an axis may be strays: see the
+/// module's text.
+fn choose_origin<I: Iterator<Item = [f64; 3]>>(positions: impl Fn() -> I, strays: f64) -> DVec3 {
+    let along = |axis: usize| inner_range(|| positions().map(|position| position[axis]), strays);
+    let [x, y, z] = [along(0), along(1), along(2)];
+    let (min, max) = (DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1]));
+    let (center, extent) = (min + (max - min) * 0.5, (max - min).max_element());
     // Points that coincide have no extent: their position itself is the best origin.
     if extent == 0.0 {
         return center;
@@ -357,7 +387,7 @@ pub(crate) fn to_f32(x: f64) -> f32 {
     x as f32
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "there are at most MAX_RECORDS kept rows")]
+#[expect(clippy::cast_possible_truncation, reason = "rows are at most MAX_RECORDS")]
 fn to_id(row: u64) -> u32 {
     row as u32
 }
@@ -395,6 +425,27 @@ mod tests {
     fn a_box_without_measurable_extent_has_an_origin() {
         let scene = scene(&[[2.0, 0.0, 0.0], [2.0, 1e-320, 0.0]], Precision::Double);
         assert_eq!(scene.origin, DVec3::new(2.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn strays_do_not_take_the_digits_of_the_rest() {
+        let near = |i: u32| [637_000.0 + f64::from(i) * 0.01, 851_000.02, 400.0];
+        let positions: Vec<[f64; 3]> =
+            std::iter::once([0.0; 3]).chain((0..5000).map(near)).collect();
+        let scene = scene(&positions, Precision::Double);
+        assert_eq!(scene.position(0), DVec3::ZERO);
+        for (index, position) in positions.iter().enumerate() {
+            let error = (scene.position(index) - DVec3::from(*position)).abs().max_element();
+            assert!(error < 2e-5, "{index}: {error}");
+        }
+    }
+
+    #[test]
+    fn warnings_have_an_end() {
+        let options = ReadOptions::default();
+        let mut builder = Builder::new(&options, Precision::Double, &Columns::default());
+        (0..1000).for_each(|i| builder.warn(format!("warning {i}")));
+        assert_eq!(builder.report.warnings.len(), WARNINGS_MAX + 1);
     }
 
     #[test]

@@ -45,6 +45,9 @@ pub enum ErrorKind {
     /// The path is that of a folder.
     #[error("this is a folder, not a file")]
     Folder,
+    /// The path is that of a pipe, a device or the like.
+    #[error("this is no regular file")]
+    NotRegular,
     /// The file has no content.
     #[error("the file is empty")]
     Empty,

@@ -21,6 +21,7 @@ mod color;
 pub mod elements;
 mod error;
 mod format;
+mod gzip;
 mod input;
 mod lammps;
 mod las;

@@ -5,10 +5,10 @@ use crate::{
     elements::Radii,
     error::{Error, ErrorKind, Fault, quote},
     format::Format,
+    gzip::{self, Gzip},
     input::Input,
     lammps, las, mmpld, pdb, ply, vtk, xyz,
 };
-use flate2::bufread::MultiGzDecoder;
 use puncta_core::{Scene, Sphere};
 use std::{
     fmt,
@@ -148,6 +148,9 @@ impl ReadOptions {
             if metadata.is_dir() {
                 return Err(ErrorKind::Folder.into());
             }
+            if !metadata.is_file() {
+                return Err(ErrorKind::NotRegular.into());
+            }
             self.read_stream(path, file, metadata.len())
         };
         read().map_err(|fault: Fault| fault.in_file(path))
@@ -189,7 +192,7 @@ impl ReadOptions {
         let is_gzip = stream.fill_buf()?.starts_with(&[0x1f, 0x8b]);
         let mut head = Vec::new();
         if is_gzip {
-            MultiGzDecoder::new(&mut stream).take(HEAD_BYTES).read_to_end(&mut head)?;
+            Gzip::new(&mut stream, length).take(HEAD_BYTES).read_to_end(&mut head)?;
         } else {
             stream.by_ref().take(HEAD_BYTES).read_to_end(&mut head)?;
         }
@@ -197,15 +200,16 @@ impl ReadOptions {
         let format = self.find_format(name, &head)?;
         let (scene, report) = match (format, is_gzip) {
             (Format::Las, true) => {
-                let mut bytes = Vec::new();
-                MultiGzDecoder::new(stream).read_to_end(&mut bytes)?;
+                let bytes = gzip::unpack(stream, length)?;
                 let length = bytes.len() as u64;
                 las::read(Cursor::new(bytes), length, self)
             }
             (Format::Las, false) => las::read(stream, length, self),
             (_, true) => {
-                let decoder = BufReader::with_capacity(1 << 18, MultiGzDecoder::new(stream));
-                self.read_input(format, Input::new(Box::new(decoder), None))
+                let mut unpacked = Gzip::new(stream, length);
+                let read = self.read_input(format, Input::new(Box::new(&mut unpacked), None))?;
+                unpacked.check_rest()?;
+                Ok(read)
             }
             (_, false) => self.read_input(format, Input::seekable(Box::new(stream), length)),
         }?;

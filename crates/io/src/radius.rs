@@ -41,15 +41,30 @@ pub fn estimate(records: &[Sphere]) -> f32 {
 
 /// The distance from a record to the nearest one that lies elsewhere.
 fn nearest(record: &Sphere, records: &[Sphere]) -> f32 {
-    let position = record.position();
-    let squared = |other: &Sphere| (other.position() - position).length_squared();
-    let least = |least: f32, d: f32| if d > 0.0 { least.min(d) } else { least };
-    records.iter().map(squared).fold(f32::INFINITY, least).sqrt()
+    // In `f64`, where the squares of all distances are finite and none but zero is zero.
+    let position = record.position().as_dvec3();
+    let squared = |other: &Sphere| (other.position().as_dvec3() - position).length_squared();
+    let least = |least: f64, d: f64| if d > 0.0 { least.min(d) } else { least };
+    to_f32(records.iter().map(squared).fold(f64::INFINITY, least).sqrt())
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+fn to_f32(x: f64) -> f32 {
+    x as f32
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn units_do_not_matter() {
+        for unit in [1e-30, 1.0, 1e30_f32] {
+            let line = |i: u8| Sphere::new([f32::from(i) * unit, 0.0, 0.0], 0.0);
+            let estimate = estimate(&(0..10).map(line).collect::<Vec<_>>()) / unit;
+            assert!((estimate - SHARE).abs() < 1e-5, "{unit}: {estimate}");
+        }
+    }
 
     #[test]
     fn a_lattice_gives_a_share_of_its_spacing() {

@@ -125,7 +125,7 @@ impl<'a, R: Read + Seek + 'a> Decoder<'a, R> {
 
     /// For how many points room may be made before they are decoded.
     pub(super) fn count_to_reserve(&self) -> u64 {
-        if self.count <= self.length { self.count } else { 0 }
+        self.count.min(self.length)
     }
 
     /// What is odd about the file.

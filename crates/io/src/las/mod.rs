@@ -14,6 +14,11 @@ Hazards: colors of 8 bits in fields of 16 (see `points`), counts and offsets tha
 LAZ, where nothing but the decoder can tell whether bytes are sound (see `laz`). A box in the header
 that does not hold the points is a warning.
 
+The header and the point records are decoded here, and compressed chunks by the crate `laz`, the
+decoder beneath the crate `las`. That crate itself does not fit: its reader needs a stream that lives
+forever, it makes a struct of all attributes for each point, and it trusts the counts of the header.
+It writes the files of the tests.
+
 Source: LAS Specification 1.4 R15, ASPRS 2019.
 */
 
