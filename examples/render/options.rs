@@ -37,7 +37,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "HEIGHT", conflicts_with = "fov")]
     pub(crate) ortho: Option<f64>,
 
-    /// The view depth before which nothing is seen; a millionth of the distance by default
+    /// The view depth before which nothing is seen; a billionth of the distance by default
     #[arg(long, value_name = "DEPTH")]
     pub(crate) near: Option<f64>,
 

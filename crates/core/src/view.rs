@@ -24,7 +24,7 @@ use glam::{DQuat, DVec2, DVec3};
 pub const MAX_SIDE: u32 = 16_384;
 
 /// The share of the distance to the target at which the near plane lies by default.
-const NEAR_SHARE: f64 = 1e-6;
+const NEAR_SHARE: f64 = 1e-9;
 
 /// The share of the picture that a fitted scene fills.
 const FIT_SHARE: f64 = 0.95;
@@ -74,7 +74,7 @@ impl View {
     /// A view from `eye` to `target`, with `up` pointing up in the picture.
     ///
     /// It starts as a perspective view of 45 degrees and 1024 x 1024 pixels, with the near plane at
-    /// a millionth of the distance to the target.
+    /// a billionth of the distance to the target.
     ///
     /// # Errors
     ///
