@@ -70,6 +70,14 @@ pub enum Error {
         /// How many records the scene has.
         records: usize,
     },
+    /// A brick to draw that is not among the bricks.
+    #[error("brick {index} is to be drawn, but there are {bricks}")]
+    UnknownBrick {
+        /// Its index.
+        index: u32,
+        /// How many bricks there are.
+        bricks: usize,
+    },
     /// A renderer was asked for a picture before one was begun.
     #[error("no picture was begun")]
     NotBegun,

@@ -7,7 +7,10 @@ after each one what is left, so that a program can show what it has or give up f
 
 use crate::{Brick, Error, Picture, Record, Scene, View, Visible, VisibleBrick};
 use glam::DVec3;
-use std::{fmt, ops::AddAssign};
+use std::{
+    fmt,
+    ops::{AddAssign, Range},
+};
 
 /// What a stage sees of a frame.
 #[derive(Debug)]
@@ -92,6 +95,29 @@ pub struct Batch<'a, R> {
     pub visible: &'a [VisibleBrick],
 }
 
+impl<R: Record> Batch<'_, R> {
+    /// Checks that the scene is valid, that its bricks are made of records that are there, and that
+    /// those to draw are among the bricks. Renderers that index do this first.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scene::validate`], [`Error::BrickRange`] or [`Error::UnknownBrick`].
+    pub fn validate(&self) -> Result<(), Error> {
+        self.scene.validate()?;
+        let records = self.scene.records.len();
+        for &VisibleBrick { index, .. } in self.visible {
+            let bricks = self.bricks.len();
+            let brick =
+                self.bricks.get(index as usize).ok_or(Error::UnknownBrick { index, bricks })?;
+            let Range { start, end } = brick.records;
+            if start > end || end as usize > records {
+                return Err(Error::BrickRange { brick: index as usize, start, end, records });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Draws bricks into a picture.
 ///
 /// Drawing is order independent: whatever the order of the batches, the picture shows the nearest
@@ -171,10 +197,12 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The amount of the bricks in play.
+    /// The amount of the bricks in play; those that are not among `bricks` hold nothing.
     #[must_use]
     pub fn of(bricks: &[Brick], visible: &[VisibleBrick]) -> Self {
-        let records = |brick: &VisibleBrick| bricks[brick.index as usize].records.len() as u64;
+        let records = |brick: &VisibleBrick| {
+            bricks.get(brick.index as usize).map_or(0, |brick| brick.records.len() as u64)
+        };
         Self { bricks: visible.len() as u64, records: visible.iter().map(records).sum() }
     }
 }
@@ -233,10 +261,11 @@ impl Step {
 ///     visible.bricks.sort_by(|a, b| a.near.total_cmp(&b.near));
 /// };
 /// let mut pipeline = Pipeline::new(nearest_first, renderer);
-/// for step in pipeline.progressive(&scene, &bricks, &view, 100_000)? {
+/// let mut steps = pipeline.progressive(&scene, &bricks, &view, 100_000)?;
+/// for step in &mut steps {
 ///     println!("{} records to go", step?.left.records);
 /// }
-/// let picture = pipeline.finish::<Sphere>()?;
+/// let picture = steps.finish()?;
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Clone, Debug, Default)]
@@ -269,16 +298,17 @@ impl<S, D> Pipeline<S, D> {
         S: Stage<G>,
         D: Renderer<R>,
     {
-        for step in self.progressive(scene, bricks, view, u64::MAX)? {
+        let mut steps = self.progressive(scene, bricks, view, u64::MAX)?;
+        for step in &mut steps {
             step?;
         }
-        self.renderer.finish()
+        steps.finish()
     }
 
     /// Starts a picture and returns an iterator that draws, at each step, the next bricks in order
     /// until they hold at least `budget` records.
     ///
-    /// [`Pipeline::finish`] gives the picture of what was drawn until then.
+    /// [`Progressive::finish`] gives the picture of what was drawn until then.
     ///
     /// # Errors
     ///
@@ -297,9 +327,8 @@ impl<S, D> Pipeline<S, D> {
         D: Renderer<R>,
     {
         let list = bricks.as_ref();
-        scene.validate()?;
-        check_ranges(list, scene.records.len())?;
         self.visible = Visible::all(list, scene.origin, view);
+        Batch { scene, bricks: list, visible: &self.visible.bricks }.validate()?;
         let all = Progress::of(list, &self.visible.bricks);
         self.stages.apply(&Frame { view, origin: scene.origin, bricks }, &mut self.visible);
         let known = |brick: &VisibleBrick| (brick.index as usize) < list.len();
@@ -316,18 +345,6 @@ impl<S, D> Pipeline<S, D> {
             step: Step { drawn: Progress::default(), left, culled },
             budget,
         })
-    }
-
-    /// The picture of all that was drawn since the last start.
-    ///
-    /// # Errors
-    ///
-    /// What the renderer has to report.
-    pub fn finish<R: Record>(&mut self) -> Result<Picture, D::Error>
-    where
-        D: Renderer<R>,
-    {
-        self.renderer.finish()
     }
 
     /// The renderer.
@@ -350,6 +367,17 @@ impl<R, D> Progressive<'_, R, D> {
     #[must_use]
     pub const fn step(&self) -> Step {
         self.step
+    }
+}
+
+impl<R: Record, D: Renderer<R>> Progressive<'_, R, D> {
+    /// The picture of what was drawn so far.
+    ///
+    /// # Errors
+    ///
+    /// What the renderer has to report.
+    pub fn finish(self) -> Result<Picture, D::Error> {
+        self.renderer.finish()
     }
 }
 
@@ -383,18 +411,5 @@ impl<R: Record, D: Renderer<R>> Iterator for Progressive<'_, R, D> {
 impl<R, D> fmt::Debug for Progressive<'_, R, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Progressive").field("step", &self.step).finish_non_exhaustive()
-    }
-}
-
-/// Checks that all bricks are made of records that are there.
-fn check_ranges(bricks: &[Brick], records: usize) -> Result<(), Error> {
-    let wrong =
-        |range: &std::ops::Range<u32>| range.start > range.end || range.end as usize > records;
-    match bricks.iter().position(|brick| wrong(&brick.records)) {
-        Some(brick) => {
-            let range = bricks[brick].records.clone();
-            Err(Error::BrickRange { brick, start: range.start, end: range.end, records })
-        }
-        None => Ok(()),
     }
 }

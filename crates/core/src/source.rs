@@ -73,9 +73,9 @@ pub trait Source: Sized {
     fn into_scene(mut self) -> Result<Scene<Self::Record>, Self::Error> {
         const CHUNK: usize = 1 << 16;
         let mut scene = Scene::new(Vec::new());
-        if let Some(remaining) = self.remaining() {
-            scene.records.reserve_exact(usize::try_from(remaining).unwrap_or(0));
-        }
+        let remaining = self.remaining().and_then(|remaining| usize::try_from(remaining).ok());
+        // Room is a favor: a source that promises more than there is memory grows as it goes.
+        scene.records.try_reserve_exact(remaining.unwrap_or(0)).ok();
         while self.append(&mut scene, CHUNK)? == CHUNK {}
         Ok(scene)
     }

@@ -86,12 +86,19 @@ impl View {
             return Err(degenerate("a coordinate is not finite"));
         }
         let sight = target - eye;
+        if !sight.is_finite() {
+            return Err(degenerate("their distance is too small or too large for a number"));
+        }
         let forward = direction(sight).ok_or_else(|| degenerate("the eye is at the target"))?;
         let up_unit = direction(up).ok_or_else(|| degenerate("up has no length"))?;
         // Below this sine of the angle between them, up says too little about left and right.
         let right = forward.cross(up_unit);
         if right.length() < 1e-9 {
             return Err(degenerate("up lies along the line of sight"));
+        }
+        let distance = length(sight);
+        if !distance.is_normal() {
+            return Err(degenerate("their distance is too small or too large for a number"));
         }
         let right = right / right.length();
         Ok(Self {
@@ -102,7 +109,7 @@ impl View {
             projection: Projection::Perspective { fov_y: 45_f64.to_radians() },
             width: 1024,
             height: 1024,
-            near: sight.length() * NEAR_SHARE,
+            near: (distance * NEAR_SHARE).max(f64::MIN_POSITIVE),
         })
     }
 
@@ -210,12 +217,14 @@ impl View {
         let distance = if distance.is_normal() && distance > 0.0 { distance } else { 1.0 };
         let back = frame.depth() - distance;
         view.eye = start + view.right * middle.x + view.up * middle.y + view.forward * back;
-        view.near = distance * NEAR_SHARE;
-        view
+        view.near = (distance * NEAR_SHARE).max(f64::MIN_POSITIVE);
+        // Balls beyond all numbers cannot be framed.
+        if view.eye.is_finite() { view } else { self }
     }
 
     /// The view from an eye that was turned around `pivot`: by `yaw` radians around the up axis
-    /// (to the right), then by `pitch` around the right axis (upwards).
+    /// (to the right), then by `pitch` around the right axis (upwards). Nothing changes if a number is
+    /// not finite.
     #[must_use]
     pub fn orbited(self, pivot: DVec3, yaw: f64, pitch: f64) -> Self {
         let turn = DQuat::from_axis_angle(self.up, yaw);
@@ -223,13 +232,11 @@ impl View {
         let rotation = lift * turn;
         let forward = (rotation * self.forward).normalize_or(self.forward);
         let right = forward.cross(rotation * self.up).normalize_or(self.right);
-        Self {
-            eye: pivot + rotation * (self.eye - pivot),
-            right,
-            up: right.cross(forward),
-            forward,
-            ..self
+        let eye = pivot + rotation * (self.eye - pivot);
+        if !(eye.is_finite() && right.is_finite() && forward.is_finite()) {
+            return self;
         }
+        Self { eye, right, up: right.cross(forward), forward, ..self }
     }
 
     /// The place of the camera.
@@ -313,10 +320,16 @@ impl View {
     }
 }
 
+/// The length of a vector, even if the squares of its coordinates are no numbers.
+fn length(vector: DVec3) -> f64 {
+    let largest = vector.abs().max_element();
+    largest * (vector / largest).length()
+}
+
 /// The unit vector along `vector`, however long or short it is; `None` if it has no length.
 fn direction(vector: DVec3) -> Option<DVec3> {
     let largest = vector.abs().max_element();
-    (largest > 0.0).then(|| {
+    (largest > 0.0 && largest.is_finite()).then(|| {
         let scaled = vector / largest;
         scaled / scaled.length()
     })
@@ -411,6 +424,10 @@ mod tests {
         assert!(at(DVec3::ONE, DVec3::ONE, DVec3::Y));
         assert!(at(DVec3::ONE, DVec3::ZERO, DVec3::ZERO));
         assert!(at(DVec3::Y, DVec3::ZERO, DVec3::NEG_Y));
+        assert!(at(DVec3::splat(1e308), DVec3::splat(-1e308), DVec3::Y));
+        let far = Bounds { min: DVec3::splat(-1.7e308), max: DVec3::splat(1.7e308) };
+        assert_eq!(front().fitted(&far), front());
+        assert_eq!(front().orbited(DVec3::ZERO, f64::NAN, 0.0), front());
         assert!(at(DVec3::NAN, DVec3::ZERO, DVec3::Y));
         for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY, std::f64::consts::PI] {
             assert!(front().with_perspective(wrong).is_err(), "{wrong}");
@@ -428,6 +445,7 @@ mod tests {
             let view = View::look_at(DVec3::Z * scale, DVec3::ZERO, DVec3::Y * scale).unwrap();
             assert_eq!(view.forward(), DVec3::NEG_Z);
             assert_eq!(view.right(), DVec3::X);
+            assert!(view.near().is_normal());
         }
     }
 

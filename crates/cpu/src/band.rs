@@ -21,6 +21,12 @@ pub(crate) struct Band<'a> {
     pub(crate) id: &'a mut [u32],
 }
 
+/// A view depth in front of which a sphere has no point, whether computed in `f64` or in `f32`, whose
+/// rounding errors are a tenth of the margin.
+pub(crate) fn nearest(depth: f64, radius: f64) -> f64 {
+    depth - radius - 1e-6 * (depth.abs() + radius)
+}
+
 /// A sphere in camera coordinates.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
@@ -76,7 +82,7 @@ impl Band<'_> {
         if first > last || screen.columns.is_empty() {
             return;
         }
-        let nearest = center.z - radius - 1e-6 * (center.z.abs() + radius);
+        let nearest = nearest(center.z, radius);
         let ball = Ball { center, radius, nearest, id };
         match Disc::new(self.camera, center, radius) {
             Some(disc) => self.draw_disc(&disc, &ball, &screen),
@@ -137,7 +143,8 @@ impl Band<'_> {
     /// Decides between what is seen at a pixel and a record of equal depth.
     fn break_tie(&mut self, (row, column): (i64, i64), id: u32) {
         let pixel = self.pixel(row, column);
-        let original = |id: u32| self.ids.map_or(id, |ids| ids[id as usize]);
+        let original =
+            |id: u32| self.ids.and_then(|ids| ids.get(id as usize)).copied().unwrap_or(id);
         if original(id) < original(self.id[pixel]) {
             self.id[pixel] = id;
         }

@@ -26,8 +26,10 @@ The surface is seen if `z >= near`.
 After Mara and McGuire, *2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere*, JCGT
 2(2), 2013. On each screen axis the silhouette is bounded by the two tangents from the eye to a
 circle in the plane of that axis and the forward axis. With `t² = cx² + cz² - r²`, their slopes are
-`(cx cz ± r t) / (cz² - r²)` while the sphere lies in front of the eye's plane; a tangent point in
-front of the near plane is replaced by the point where the circle meets that plane.
+`(cx cz ± r t) / (cz² - r²)` while the sphere lies in front of the eye's plane. Only the one of larger
+size is computed like that; the other follows from their product, `(cx² - r²) / (cz² - r²)`, so that
+no difference of nearly equal numbers is taken. A tangent point in front of the near plane is replaced
+by the point where the circle meets that plane.
 */
 
 use glam::{DVec2, DVec3};
@@ -163,10 +165,11 @@ impl Camera {
             (extent(center.x), extent(center.y))
         } else if center.z - radius > self.near {
             let t = (center.z - radius) * (center.z + radius);
-            let inverse = 1.0 / t;
             let slopes = |c: f64| {
-                let (middle, reach) = (c * center.z, radius * (c * c + t).sqrt());
-                ((middle - reach) * inverse, (middle + reach) * inverse)
+                let c_abs = c.abs();
+                let larger = c_abs * center.z + radius * (c * c + t).sqrt();
+                let (low, high) = ((c_abs - radius) * (c_abs + radius) / larger, larger / t);
+                if c < 0.0 { (-high, -low) } else { (low, high) }
             };
             (slopes(center.x), slopes(center.y))
         } else {
@@ -223,8 +226,9 @@ impl Camera {
         };
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for corner in (0..8).map(corner) {
-            // A box that reaches before the near plane may cover anything.
-            if self.is_perspective && corner.z < self.near {
+            // A box that reaches before the near plane, or beyond all numbers, may cover anything.
+            let is_beyond = corner.z >= self.near && corner.is_finite();
+            if !is_beyond && (self.is_perspective || !corner.is_finite()) {
                 return 0..=i64::from(self.height) - 1;
             }
             let y = if self.is_perspective { corner.y / corner.z } else { corner.y };

@@ -8,7 +8,8 @@ use puncta_core::Image;
 const MARKS: usize = 5;
 
 /// Draws a bar of `map` with the values from `range[0]` (bottom) to `range[1]` (top) and a `title`
-/// above it at the right edge of the image. On an image too small to hold it, nothing is drawn.
+/// above it at the right edge of the image. On an image too small to hold it, or without a color for
+/// each pixel, nothing is drawn.
 pub fn draw_legend(image: &mut Image, map: &ColorMap, range: [f64; 2], title: &str) {
     let font = match image.height {
         0..720 => RasterHeight::Size16,
@@ -23,6 +24,9 @@ pub fn draw_legend(image: &mut Image, map: &ColorMap, range: [f64; 2], title: &s
     let label_width = labels.iter().map(|label| label.chars().count()).max().unwrap_or(0) * letter;
     let title_width = title.chars().count() * letter;
     let (width, height) = (image.width as usize, image.height as usize);
+    if image.pixels.len() != width * height {
+        return;
+    }
     let (bar_width, bar_height) = (line, height * 2 / 5);
     let block = (bar_width + line / 2 + label_width).max(title_width);
     if width < block + 2 * line || bar_height < MARKS * line || height < bar_height + 5 * line {

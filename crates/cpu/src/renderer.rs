@@ -24,7 +24,8 @@ const BAND_ROWS_MIN: usize = 32;
 ///
 /// Against exact arithmetic, a silhouette is off by at most 1e-4 of a pixel and a view depth by at
 /// most 2⁻²² of itself. Set-up is in `f64`, from offsets relative to the eye; so neither a narrow
-/// angle nor the distance of the scene from the world's origin changes that.
+/// angle nor the distance of the scene from the world's origin changes that. Only the last digits of
+/// `f64` set a limit: a sphere whose surface is nearer to the eye than 1e-8 of its radius.
 ///
 /// # Examples
 ///
@@ -67,6 +68,7 @@ impl<R: Record> Renderer<R> for CpuRenderer {
 
     fn draw(&mut self, batch: &Batch<'_, R>) -> Result<(), Error> {
         let drawing = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
+        batch.validate()?;
         let camera = &Camera::new(&drawing.view, batch.scene.origin);
         let originals = batch.scene.attributes.ids.as_deref();
         let rows_of_bricks = rows_of_bricks(camera, batch);
@@ -99,6 +101,14 @@ impl<R: Record> Renderer<R> for CpuRenderer {
     }
 
     fn progress(&self) -> Progress {
+        self.drawn()
+    }
+}
+
+impl CpuRenderer {
+    /// What was drawn since the picture was begun, whatever the type of the records.
+    #[must_use]
+    pub fn drawn(&self) -> Progress {
         self.frame.as_ref().map_or_else(Progress::default, |drawing| drawing.progress)
     }
 }

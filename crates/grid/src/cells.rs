@@ -13,7 +13,7 @@ use crate::Error;
 use glam::{DVec3, Vec3};
 use puncta_core::Aabb;
 
-/// The largest number of cells: their histogram takes half a gigabyte.
+/// The largest number of cells: sorting needs a gigabyte for them.
 pub(crate) const CELLS_MAX: u64 = 1 << 27;
 
 /// How fine a grid is.
@@ -21,7 +21,8 @@ pub(crate) const CELLS_MAX: u64 = 1 << 27;
 pub enum Resolution {
     /// The number of cells along the longest side of the data.
     LongestSide(u32),
-    /// About this many records in a brick, if they were spread evenly over the box of the data.
+    /// About this many records in a brick, if they were spread evenly over the box of the data; more
+    /// if that would be more cells than a grid can have.
     RecordsPerBrick(u32),
 }
 
@@ -58,12 +59,16 @@ impl Cells {
         let longest = match resolution {
             Resolution::LongestSide(cells) => f64::from(cells),
             Resolution::RecordsPerBrick(target) => {
-                cells_along_longest(sides, records as f64 / f64::from(target.max(1)))
+                // Less than there may be, as whole numbers of cells are a little more than wished.
+                let bricks = records as f64 / f64::from(target.max(1));
+                cells_along_longest(sides, bricks.min(CELLS_MAX as f64 * 0.6))
             }
         };
         // A point has no extent and one cell; its width is as good as any other.
         let width = sides.max_element() / longest;
         let width = if width > 0.0 { width } else { 1.0 };
+        // Cells that are thinner than the spacing of the numbers themselves would hold nothing.
+        let width = width.max(spacing(&bounds));
         let count = |side: f64| (side / width).ceil().clamp(1.0, longest.max(1.0));
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 2^32")]
         let dims = sides.to_array().map(|side| count(side) as u64);
@@ -139,6 +144,16 @@ impl Cells {
     }
 }
 
+/// The largest distance between neighboring `f32` along the sides that have an extent.
+fn spacing(bounds: &Aabb) -> f64 {
+    let along = |axis: usize| {
+        let largest = bounds.min[axis].abs().max(bounds.max[axis].abs());
+        let has_extent = bounds.min[axis] < bounds.max[axis];
+        if has_extent { f64::from(largest) - f64::from(largest.next_down()) } else { 0.0 }
+    };
+    (0..3).map(along).fold(0.0, f64::max)
+}
+
 /// The ascending faces of `count` cells from `min` to just above `max`.
 fn faces(min: f32, max: f32, width: f64, count: u32) -> Vec<f32> {
     #[expect(clippy::cast_possible_truncation, reason = "rounding keeps the order")]
@@ -178,6 +193,22 @@ mod tests {
         assert_eq!(cells_along_longest(DVec3::new(0.0, 0.0, 7.0), 100.0), 100.0);
         assert_eq!(cells_along_longest(DVec3::ZERO, 100.0), 1.0);
         assert_eq!(cells_along_longest(DVec3::new(1.0, 1.0, 1e-9), 100.0), 10.0);
+    }
+
+    #[test]
+    fn cells_are_no_thinner_than_the_numbers_allow() {
+        let bounds = Aabb { min: Vec3::X, max: Vec3::X.with_x(1.0_f32.next_up()) };
+        let cells = Cells::new(bounds, 3_000_000, Resolution::default()).unwrap();
+        assert!(cells.dims()[0] <= 2, "{:?}", cells.dims());
+    }
+
+    #[test]
+    fn a_wish_for_too_many_bricks_is_lowered() {
+        let bounds = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
+        for records in [1 << 28, u32::MAX as usize] {
+            let cells = Cells::new(bounds, records, Resolution::RecordsPerBrick(1)).unwrap();
+            assert!(cells.count() as u64 <= CELLS_MAX && cells.count() as u64 > CELLS_MAX / 2);
+        }
     }
 
     #[test]

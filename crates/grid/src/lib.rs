@@ -19,7 +19,7 @@ for sphere in &spheres[brick.records.start as usize..brick.records.end as usize]
 The grid follows section 3.1.1 of *Visibility-Driven Progressive Rendering of Large Particle Data*,
 the thesis whose methods puncta is built on: cells are cubes; a histogram over the cells gives each
 brick its place; a second pass swaps records into their places. It owns no records, and beside them
-it needs 4 bytes for each cell while sorting and 44 bytes for each occupied brick afterwards.
+it needs 8 bytes for each cell while sorting and 44 bytes for each occupied brick afterwards.
 */
 
 mod cells;

@@ -47,7 +47,8 @@ impl Plane {
         let reach = self.normal.abs().dot(half) + f64::from(brick.radius_max);
         let largest = to_origin.length() + center.length() + self.distance.abs() + reach;
         let slack = 16.0 * f64::EPSILON * largest;
-        self.normal.dot(center) + self.distance + reach >= -slack
+        // Written so that a box beyond all numbers, which makes NaN, is kept.
+        !(self.normal.dot(center) + self.distance + reach < -slack)
     }
 }
 
