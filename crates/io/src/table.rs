@@ -5,7 +5,7 @@ use crate::{
     builder::{Columns, Row},
     elements,
     error::{Fault, Place, Problem},
-    text::{columns, number, number_f32},
+    text::{columns, number, number_f32, whole},
 };
 
 /// The largest number of columns: a header must not make a reader keep names without end.
@@ -26,6 +26,9 @@ pub(crate) enum Role {
     ColorByte(usize),
     /// A symbol, a label or an atomic number.
     Element,
+    /// An atomic number or another whole one, or a label: the first column of rows whose first one
+    /// starts with a whole number. With a fraction or a sign it would be a coordinate.
+    Kind,
     /// A whole number by which an atom is known.
     Id,
     /// A measurement of this index.
@@ -99,7 +102,7 @@ impl Table {
     pub(crate) fn columns(&self) -> Columns {
         Columns {
             color: self.has(Role::Color(0)) || self.has(Role::ColorByte(0)),
-            element: self.has(Role::Element),
+            element: self.has(Role::Element) || self.has(Role::Kind),
             scalars: self.names.clone(),
         }
     }
@@ -153,6 +156,8 @@ impl Values {
             Role::Color(channel) => self.set_color(channel, number(text)? * 255.0)?,
             Role::ColorByte(channel) => self.set_color(channel, number(text)?)?,
             Role::Element => self.element = elements::from_label(text),
+            Role::Kind if !is_kind(text) => return None,
+            Role::Kind => self.element = elements::from_label(text),
             Role::Id => self.id = id(text)?,
             Role::Scalar(index) => *self.scalars.get_mut(index)? = number_f32(text)?,
             Role::IdScalar(index) => {
@@ -181,6 +186,11 @@ impl Values {
         *self.color.get_mut(channel)? = byte;
         Some(())
     }
+}
+
+/// Whether a text may tell the kind of an atom: it is a label, or a number of digits alone.
+pub(crate) fn is_kind(text: &[u8]) -> bool {
+    number(text).is_none() || (whole(text).is_some() && !text.starts_with(b"+"))
 }
 
 /// A whole number; some programs write it with a decimal point.

@@ -125,6 +125,43 @@ mod plain {
     }
 
     #[test]
+    fn rows_that_start_with_a_whole_number_may_have_no_name() {
+        let rows = "0 0 0 1.5\n0.5 0 0 2.5\n0.25 3 4 3.5";
+        for comment in ["lattice sites x y z s\n", ""] {
+            let loaded = read(&format!("3\n{comment}{rows}"));
+            assert_eq!(xs(&loaded), [0.0, 0.5, 0.25], "{comment}");
+            assert_eq!(loaded.scene.position(2), DVec3::new(0.25, 3.0, 4.0));
+            assert_eq!(scalar(&loaded, "column_4"), [1.5, 2.5, 3.5]);
+        }
+        for x in ["-1", "+1", "1e0", "1.", ".5"] {
+            let text = format!("3\n\n0 1 0 7\n2 1 0 8\n{x} 1 0 9\n3\n\n0 1 2 3\n");
+            assert_eq!(xs(&read(&text))[..2], [0.0, 2.0], "{x}");
+        }
+        // The rows of another frame tell nothing of this one.
+        let typed = read("2\n\n500 1 0 0\n1 2 0 0\n2\n\n0.5 3 0 0\n1 2 0 0\n");
+        assert_eq!((xs(&typed), typed.report.skipped), (vec![1.0, 2.0], vec![]));
+    }
+
+    #[test]
+    fn names_that_are_whole_numbers_must_be_so_in_all_rows() {
+        let types = read("4\n\n500 1 0 0 7\n800 2 0 0 8\n1 3 0 0 9\nO 4 0 0 9\n");
+        assert_eq!((xs(&types), types.report.skipped), (vec![1.0, 2.0, 3.0, 4.0], vec![]));
+        // The row that contradicts is too far away to be looked at.
+        let rows = "1 2 3 4\n".repeat(20_000);
+        let late = read(&format!("20001\n\n{rows}0.5 2 3 4\n"));
+        assert_eq!(late.scene.records.len(), 20_000);
+        let [skipped] = &late.report.skipped[..] else { panic!("one problem") };
+        let found = (skipped.problem, skipped.count, skipped.first.to_string(), &*skipped.value);
+        assert_eq!(found, (Problem::Number, 1, "line 20003".to_owned(), "\"0.5\""));
+    }
+
+    #[test]
+    fn a_comment_of_numbers_does_not_tell_what_rows_are() {
+        let loaded = read("2\n1.5 2 3 4\n1 10 0 0\n2 20 0 0\n");
+        assert_eq!((xs(&loaded), loaded.report.skipped), (vec![10.0, 20.0], vec![]));
+    }
+
+    #[test]
     fn a_mark_of_utf_8_does_no_harm() {
         assert_eq!(xs(&read("\u{feff}1\n\nC 7 0 0\n")), [7.0]);
     }
