@@ -192,7 +192,8 @@ fn read_frame(
     let mut second = second_line(lines, count)?;
     let mut rows = count;
     let mut first_bad = None;
-    let table = match properties::table(&second.line, second.place, options)? {
+    let told = properties::told(&second.line, second.place, options)?;
+    let table = match told.table {
         Some(table) => {
             second.shape = None;
             table
@@ -206,6 +207,7 @@ fn read_frame(
     if lines.can_hold(count, rest.table.roles.len()) {
         rest.atoms.reserve(count)?;
     }
+    told.warning.into_iter().for_each(|warning| rest.atoms.warn(warning));
     if let Some(bad) = first_bad {
         rows -= bad.count;
         for _ in 0..bad.count {

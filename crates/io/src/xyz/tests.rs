@@ -362,6 +362,13 @@ mod extended {
     }
 
     #[test]
+    fn a_word_like_lattice_is_a_warning() {
+        let loaded = read("1\nsilicon, lattice=5.43\nSi 0 0 0\n");
+        let warning = "line 2: Lattice must have nine numbers, not 1";
+        assert_eq!((xs(&loaded), loaded.report.warnings), (vec![0.0], vec![warning.to_owned()]));
+    }
+
+    #[test]
     fn a_wrong_header_is_an_error() {
         let error = fail(&TEXT.replace("0 0 9\"", "0 0\""));
         assert_eq!(error, "a.xyz, line 2: Lattice must have nine numbers, not 8");
