@@ -18,6 +18,7 @@ use super::{
 use crate::{
     builder::{Builder, to_f32},
     error::Fault,
+    table::Table,
 };
 use puncta_core::Scalar;
 
@@ -138,6 +139,10 @@ impl File<'_, '_, '_> {
         wanted.retain(|(name, _)| self.options.wants(name));
         if wanted.is_empty() && !is_radius && !is_color {
             return self.source.skip(*kind, total, name);
+        }
+        if !is_radius && !is_color {
+            self.columns += wanted.len() as u64;
+            Table::check(self.columns, self.source.place())?;
         }
         self.source.start(*kind, total, name)?;
         if is_radius {

@@ -143,6 +143,21 @@ fn what_is_wrong_in_binary_is_told_by_byte() {
 }
 
 #[test]
+fn columns_without_end_are_refused() {
+    let head = format!("{HEAD}POINTS 1 float\n1 2 3\nPOINT_DATA 1\nFIELD f 60000\n");
+    let arrays: String = (0..60_000).map(|i| format!("a{i} 1 1 float\n1\n")).collect();
+    let error = read(&format!("{head}{arrays}")).unwrap_err().to_string();
+    // The first array is announced on line 9, the one too many 4096 arrays of two lines later.
+    assert_eq!(error, "a.vtk, line 8201: there must be at most 4096 columns, not 4097");
+    let wide: String = (0..500).map(|i| format!("a{i} 9 1 float\n1 2 3 4 5 6 7 8 9\n")).collect();
+    let error = read(&format!("{head}{wide}")).unwrap_err().to_string();
+    assert!(error.ends_with("there must be at most 4096 columns, not 4104"), "{error}");
+    let few: String = (0..4096).map(|i| format!("a{i} 1 1 float\n1\n")).collect();
+    let loaded = read(&format!("{}{few}", head.replace("60000", "4096"))).unwrap();
+    assert_eq!(loaded.scene.attributes.scalars.len(), 4096);
+}
+
+#[test]
 fn the_fluid_is_read() {
     let Some(folder) = std::env::var_os("PUNCTA_DATA") else {
         eprintln!("skipped: PUNCTA_DATA is not set");
