@@ -299,7 +299,7 @@ struct Rows<'o> {
 
 impl<'o> Rows<'o> {
     fn new(table: Table, options: &'o ReadOptions) -> Self {
-        let (values, atoms) = (table.values(), Atoms::new(options, &table.columns()));
+        let (values, atoms) = (table.values(), Atoms::of_table(options, &table));
         Self { table, values, atoms }
     }
 
@@ -309,9 +309,7 @@ impl<'o> Rows<'o> {
     }
 
     fn finish(mut self) -> Result<(Scene, Report), Fault> {
-        if self.values.clamped {
-            self.atoms.warn("colors outside of their range were moved into it");
-        }
+        self.atoms.warn_of_colors(&self.values);
         self.atoms.finish()
     }
 }

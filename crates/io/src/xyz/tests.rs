@@ -346,14 +346,30 @@ mod extended {
             "2\nProperties=pos:R:3:radius:R:1:color:I:4\n0 0 0 1 300 0 -1 9\n1 0 0 1 1 2 3 4\n";
         let loaded = read(text);
         assert_eq!(loaded.scene.attributes.colors, Some(vec![[255, 0, 0, 9], [1, 2, 3, 4]]));
-        assert_eq!(loaded.report.warnings, ["colors outside of their range were moved into it"]);
+        let clamped = "1 colors lie outside of 0..1 and were clamped";
+        assert_eq!(loaded.report.warnings, [clamped]);
+        let loaded = read(&TEXT.replace("0.25 1 F", "nan 1 F").replace("1 0.5 0 T", "1 -1 0 T"));
+        assert_eq!(loaded.scene.attributes.colors, Some(vec![[255, 0, 0, 255], [255; 4]]));
+        assert_eq!(loaded.report.skipped, []);
+        assert_eq!(loaded.report.warnings[0], "1 colors are not a number; they are white");
+        assert_eq!(loaded.report.warnings[1], clamped);
+    }
+
+    #[test]
+    fn scalars_of_one_name_are_one() {
+        let loaded = read("1\nProperties=pos:R:3:a:R:1:a:R:1:a_x:R:1:a:R:3\n0 0 0 1 2 3 4 5 6\n");
+        let scalars = &loaded.scene.attributes.scalars;
+        let found: Vec<_> = scalars.iter().map(|s| (&*s.name, s.values[0])).collect();
+        assert_eq!(found, [("a", 1.0), ("a_x", 3.0), ("a_y", 5.0), ("a_z", 6.0)]);
+        let warnings = ["a", "a_x"].map(|name| format!("a second scalar {name} is left out"));
+        assert_eq!(loaded.report.warnings[..2], warnings);
     }
 
     #[test]
     fn bad_values_are_counted() {
         let text = TEXT.replace("0.25 0 0.25 1 F", "-1 0 0.25 1 F");
         assert_eq!(read(&text).report.skipped[0].problem, Problem::Radius);
-        for (from, to) in [(" F\n", " maybe\n"), (" 1 F", " nan F"), (".4 ", ".4.4 ")] {
+        for (from, to) in [(" F\n", " maybe\n"), (".4 ", ".4.4 ")] {
             let loaded = read(&TEXT.replace(from, to));
             assert_eq!(loaded.report.skipped[0].problem, Problem::Number, "{to}");
         }
