@@ -1,7 +1,7 @@
 //! What readers of text share: lines that can be given back, columns, and numbers.
 
 use crate::{
-    error::{ErrorKind, Fault, Place, quote},
+    error::{Fault, Place, quote},
     input::Input,
 };
 use std::collections::VecDeque;
@@ -85,8 +85,7 @@ impl<'i, 'a> Lines<'i, 'a> {
         if self.advance()? {
             return Ok(());
         }
-        let kind = ErrorKind::Truncated { what: what.to_owned(), needed: 1, left: 0 };
-        Err(Fault { place: Some(self.place()), kind })
+        Err(Fault::missing(self.place(), what))
     }
 
     /// Lets the line that was read last be the next one again.

@@ -140,7 +140,7 @@ impl File<'_, '_, '_> {
     }
 
     fn skip_words(&mut self, count: usize, what: &str) -> Result<(), Fault> {
-        (0..count).try_for_each(|_| self.source.expect(what).map(|_| ()))
+        (0..count).try_for_each(|_| self.source.value(what).map(|_| ()))
     }
 
     fn read_dataset(&mut self) -> Result<(), Fault> {

@@ -51,10 +51,7 @@ fn what_is_wrong_is_told() {
     for (text, expected) in [
         ("# vtk DataFile Version 6.0\n", format!("{first}, not \"# vtk DataFile Version 6.0\"")),
         ("# vtk DataFile Version x\n", format!("{first}, not \"# vtk DataFile Version x\"")),
-        (
-            "# vtk DataFile Version 3.0",
-            "line 2: the file ends in the title: 1 bytes are needed, 0 are left".into(),
-        ),
+        ("# vtk DataFile Version 3.0", "line 2: the file ends before the title".into()),
         (
             "# vtk DataFile Version 3.0\nt\nHTML\n",
             "line 3: the third line must be ASCII or BINARY, not \"HTML\"".into(),
@@ -83,7 +80,7 @@ fn what_is_wrong_is_told() {
         ),
         (
             "POINTS 2 float\n100 100 100 1\n",
-            "line 6: the file ends in POINTS: 1 bytes are needed, 0 are left",
+            "line 6: the file ends before the last values of POINTS",
         ),
         (&format!("{one}{one}"), "line 7: a file must have its points once, not \"POINTS\""),
         ("POINT_DATA 2", "line 5: the points with data must be the 0 points, not \"2\""),

@@ -12,6 +12,9 @@ use crate::{
 };
 use puncta_core::Scene;
 
+/// What a file starts with.
+const FIRST: &str = "the first line must be the number of atoms, or a row of coordinates";
+
 /// Reads a frame.
 pub(crate) fn read(input: &mut Input<'_>, options: &ReadOptions) -> Result<(Scene, Report), Fault> {
     let mut lines = Lines::new(input);
@@ -128,7 +131,12 @@ fn seek(lines: &mut Lines<'_, '_>, frame: u64) -> Result<u64, Fault> {
         if !lines.advance_to_text()? {
             return Err(ErrorKind::NoSuchFrame { frame, frames }.into());
         }
-        let count = text::count(lines.text(), lines.place(), "the number of atoms")?;
+        let line = lines.text().trim_ascii();
+        // Commas between numbers, say: it may be another kind of file altogether.
+        if frames == 0 && number(line).is_none() {
+            return Err(Fault::invalid(lines.place(), FIRST, quote(line)));
+        }
+        let count = text::count(line, lines.place(), "the number of atoms")?;
         if frames == frame {
             return Ok(count);
         }
@@ -279,8 +287,7 @@ fn warn_of_more(lines: &mut Lines<'_, '_>, atoms: &mut Atoms<'_>) -> Result<(), 
 fn read_points(lines: &mut Lines<'_, '_>, options: &ReadOptions) -> Result<(Scene, Report), Fault> {
     let (line, place) = (lines.text(), lines.place());
     let Some(shape) = Shape::of_point(line) else {
-        let what = "the first line must be the number of atoms, or a row of coordinates";
-        return Err(Fault::invalid(place, what, quote(line)));
+        return Err(Fault::invalid(place, FIRST, quote(line)));
     };
     let mut rows = Rows::new(shape.table(line, place, options)?, options);
     rows.push(lines)?;
