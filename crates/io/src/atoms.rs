@@ -37,6 +37,15 @@ impl<'a> Atoms<'a> {
         }
     }
 
+    /// For the rows of a table.
+    pub(crate) fn of_table(options: &'a ReadOptions, table: &Table) -> Self {
+        let mut atoms = Self::new(options, &table.columns());
+        for name in &table.repeated {
+            atoms.warn(format!("a second scalar {name} is left out"));
+        }
+        atoms
+    }
+
     pub(crate) fn reserve(&mut self, count: u64) -> Result<(), Fault> {
         self.builder.reserve(count)
     }
@@ -75,6 +84,11 @@ impl<'a> Atoms<'a> {
         value: impl FnOnce() -> String,
     ) -> Result<(), Fault> {
         self.builder.skip(problem, place, value)
+    }
+
+    /// Tells what happened to the colors of rows.
+    pub(crate) fn warn_of_colors(&mut self, values: &Values) {
+        values.colors.warn(&mut self.builder);
     }
 
     pub(crate) fn warn(&mut self, warning: impl Into<String>) {

@@ -271,6 +271,25 @@ impl<'a> Builder<'a> {
         std::mem::take(&mut self.radius_missing)
     }
 
+    /// Counts `count` rows that cannot be used, the first of which is at this place; an error if
+    /// reading is strict.
+    pub(crate) fn skip_many(
+        &mut self,
+        problem: Problem,
+        (place, count): (Place, u64),
+        value: impl FnOnce() -> String,
+    ) -> Result<(), Fault> {
+        let Some(more) = count.checked_sub(1) else { return Ok(()) };
+        self.skip(problem, place, value)?;
+        self.rows = self.rows.saturating_add(more);
+        if self.rows > MAX_RECORDS as u64 {
+            return Err(ErrorKind::TooManyRecords(self.rows).into());
+        }
+        let skipped = self.report.skipped.iter_mut().find(|skipped| skipped.problem == problem);
+        skipped.into_iter().for_each(|skipped| skipped.count += more);
+        Ok(())
+    }
+
     /// The colors so far, for readers that learn of their meaning only as they go.
     pub(crate) fn colors_mut(&mut self) -> &mut Option<Vec<[u8; 4]>> {
         &mut self.colors

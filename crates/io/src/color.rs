@@ -6,7 +6,7 @@ use crate::builder::Builder;
 pub(crate) const WHITE: [u8; 4] = [255; 4];
 
 /// Makes colors, and counts those that had to be changed.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Colors {
     not_numbers: u64,
     outside: u64,

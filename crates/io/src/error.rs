@@ -67,6 +67,12 @@ pub enum ErrorKind {
         /// How many the file still has.
         left: u64,
     },
+    /// A line or word is missing at the end of the file.
+    #[error("the file ends before {what}")]
+    MissingLine {
+        /// What it should hold.
+        what: String,
+    },
     /// A value is not what it must be.
     #[error("{what}, not {value}")]
     Invalid {
@@ -142,6 +148,11 @@ impl Fault {
     pub(crate) fn invalid(place: Place, what: impl Into<String>, value: impl fmt::Display) -> Self {
         let kind = ErrorKind::Invalid { what: what.into(), value: shorten(&value.to_string()) };
         Self { place: Some(place), kind }
+    }
+
+    /// A line or word that is missing at the end of the file.
+    pub(crate) fn missing(place: Place, what: impl Into<String>) -> Self {
+        Self { place: Some(place), kind: ErrorKind::MissingLine { what: what.into() } }
     }
 
     /// The same fault, in this file.

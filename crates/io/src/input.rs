@@ -117,8 +117,7 @@ impl<'a> Input<'a> {
         if self.line(line)? {
             return Ok(());
         }
-        let kind = ErrorKind::Truncated { what: what.to_owned(), needed: 1, left: 0 };
-        Err(Fault { place: Some(self.at_line()), kind })
+        Err(Fault::missing(self.at_line(), what))
     }
 
     /// Reads the next word into `word`; false at the end of the file.

@@ -3,9 +3,10 @@
 use crate::{
     ReadOptions,
     builder::{Columns, Row},
+    color::Colors,
     elements,
     error::{Fault, Place, Problem},
-    text::{columns, number, number_f32},
+    text::{columns, number, number_f32, whole},
 };
 
 /// The largest number of columns: a header must not make a reader keep names without end.
@@ -26,6 +27,9 @@ pub(crate) enum Role {
     ColorByte(usize),
     /// A symbol, a label or an atomic number.
     Element,
+    /// An atomic number or another whole one, or a label: the first column of rows whose first one
+    /// starts with a whole number. With a fraction or a sign it would be a coordinate.
+    Kind,
     /// A whole number by which an atom is known.
     Id,
     /// A measurement of this index.
@@ -42,6 +46,8 @@ pub(crate) struct Table {
     pub(crate) roles: Vec<Role>,
     /// The names of the scalars.
     pub(crate) names: Vec<String>,
+    /// The names of scalars that were there already.
+    pub(crate) repeated: Vec<String>,
 }
 
 /// What a row holds; used again for each row.
@@ -53,8 +59,11 @@ pub(crate) struct Values {
     pub(crate) element: u8,
     pub(crate) id: i64,
     pub(crate) scalars: Vec<f32>,
-    /// Whether the color of any row had to be moved into its range.
-    pub(crate) clamped: bool,
+    /// What happened to colors.
+    pub(crate) colors: Colors,
+    /// The color of a row whose color is to be made, with parts from 0 to 1.
+    parts: [f64; 4],
+    has_color: bool,
 }
 
 /// Why a row cannot be used, and the text at fault.
@@ -75,14 +84,17 @@ impl Table {
         self.roles.push(role);
     }
 
-    /// Adds a column of measurements if they are wanted.
+    /// Adds a column of measurements if they are wanted and there are none of this name.
     pub(crate) fn push_scalar(
         &mut self,
         name: String,
         options: &ReadOptions,
         role: fn(usize) -> Role,
     ) {
-        if options.wants(&name) {
+        if self.names.contains(&name) {
+            self.repeated.push(name);
+            self.roles.push(Role::Ignored);
+        } else if options.wants(&name) {
             self.roles.push(role(self.names.len()));
             self.names.push(name);
         } else {
@@ -95,11 +107,15 @@ impl Table {
         self.roles.contains(&role)
     }
 
+    fn has_color(&self) -> bool {
+        self.has(Role::Color(0)) || self.has(Role::ColorByte(0))
+    }
+
     /// The columns that a builder must know.
     pub(crate) fn columns(&self) -> Columns {
         Columns {
-            color: self.has(Role::Color(0)) || self.has(Role::ColorByte(0)),
-            element: self.has(Role::Element),
+            color: self.has_color(),
+            element: self.has(Role::Element) || self.has(Role::Kind),
             scalars: self.names.clone(),
         }
     }
@@ -113,7 +129,9 @@ impl Table {
             element: 0,
             id: i64::MAX,
             scalars: vec![f32::NAN; self.names.len()],
-            clamped: false,
+            colors: Colors::default(),
+            parts: [1.0; 4],
+            has_color: self.has_color(),
         }
     }
 
@@ -131,7 +149,12 @@ impl Table {
         match (texts.next(), wrong) {
             (Some(_), _) => Err((Problem::Columns, line)),
             (None, Some(text)) => Err((Problem::Number, text)),
-            (None, None) => Ok(()),
+            (None, None) => {
+                if values.has_color {
+                    values.color = values.colors.color(values.parts);
+                }
+                Ok(())
+            }
         }
     }
 }
@@ -150,9 +173,11 @@ impl Values {
             Role::Axis(axis) => *self.axes.get_mut(axis)? = number(text)?,
             Role::Radius => self.radius = Some(number(text)?),
             Role::Diameter => self.radius = Some(number(text)? / 2.0),
-            Role::Color(channel) => self.set_color(channel, number(text)? * 255.0)?,
-            Role::ColorByte(channel) => self.set_color(channel, number(text)?)?,
+            Role::Color(channel) => *self.parts.get_mut(channel)? = number(text)?,
+            Role::ColorByte(channel) => *self.parts.get_mut(channel)? = number(text)? / 255.0,
             Role::Element => self.element = elements::from_label(text),
+            Role::Kind if !is_kind(text) => return None,
+            Role::Kind => self.element = elements::from_label(text),
             Role::Id => self.id = id(text)?,
             Role::Scalar(index) => *self.scalars.get_mut(index)? = number_f32(text)?,
             Role::IdScalar(index) => {
@@ -169,18 +194,11 @@ impl Values {
         }
         Some(())
     }
+}
 
-    fn set_color(&mut self, channel: usize, value: f64) -> Option<()> {
-        if value.is_nan() {
-            return None;
-        }
-        self.clamped |= !(0.0..=255.0).contains(&value);
-        #[expect(clippy::cast_possible_truncation, reason = "the value is clamped to bytes")]
-        #[expect(clippy::cast_sign_loss, reason = "the value is clamped to bytes")]
-        let byte = value.clamp(0.0, 255.0).round() as u8;
-        *self.color.get_mut(channel)? = byte;
-        Some(())
-    }
+/// Whether a text may tell the kind of an atom: it is a label, or a number of digits alone.
+pub(crate) fn is_kind(text: &[u8]) -> bool {
+    number(text).is_none() || (whole(text).is_some() && !text.starts_with(b"+"))
 }
 
 /// A whole number; some programs write it with a decimal point.

@@ -1,21 +1,32 @@
 //! What readers of text share: lines that can be given back, columns, and numbers.
 
 use crate::{
-    error::{ErrorKind, Fault, Place, quote},
+    error::{Fault, Place, quote},
     input::Input,
 };
+use std::collections::VecDeque;
+
+/// About how many bytes are read to look ahead.
+const AHEAD_BYTES: usize = 1 << 16;
 
 /// The lines of a text; the one that was read last can be read again.
 pub(crate) struct Lines<'i, 'a> {
     input: &'i mut Input<'a>,
     line: Vec<u8>,
+    /// Where it is.
+    place: Place,
     /// Whether the line that was read last is to come again.
     held: bool,
+    /// The lines that follow and were read already.
+    ahead: VecDeque<(Vec<u8>, Place)>,
+    /// Where the text ends, once that is known.
+    end: Option<Place>,
 }
 
 impl<'i, 'a> Lines<'i, 'a> {
     pub(crate) fn new(input: &'i mut Input<'a>) -> Self {
-        Self { input, line: Vec::new(), held: false }
+        let (line, place) = (Vec::new(), input.at_line());
+        Self { input, line, place, held: false, ahead: VecDeque::new(), end: None }
     }
 
     /// Goes to the next line; false at the end of the text.
@@ -24,11 +35,39 @@ impl<'i, 'a> Lines<'i, 'a> {
             self.held = false;
             return Ok(true);
         }
+        if let Some((line, place)) = self.ahead.pop_front() {
+            (self.line, self.place) = (line, place);
+            return Ok(true);
+        }
+        if let Some(end) = self.end {
+            self.line.clear();
+            self.place = end;
+            return Ok(false);
+        }
         let found = self.input.line(&mut self.line)?;
-        if self.place() == Place::Line(1) && self.line.starts_with(b"\xef\xbb\xbf") {
+        self.place = self.input.at_line();
+        self.end = (!found).then_some(self.place);
+        if self.place == Place::Line(1) && self.line.starts_with(b"\xef\xbb\xbf") {
             self.line.drain(..3);
         }
         Ok(found)
+    }
+
+    /// The lines after the one that was read last, which come all the same: at most `count`, and
+    /// not many more bytes than [`AHEAD_BYTES`].
+    pub(crate) fn look_ahead(&mut self, count: u64) -> Result<impl Iterator<Item = &[u8]>, Fault> {
+        let mut bytes: usize = self.ahead.iter().map(|(line, _)| line.len() + 1).sum();
+        while self.end.is_none() && (self.ahead.len() as u64) < count && bytes < AHEAD_BYTES {
+            let mut line = Vec::new();
+            if self.input.line(&mut line)? {
+                bytes += line.len() + 1;
+                self.ahead.push_back((line, self.input.at_line()));
+            } else {
+                self.end = Some(self.input.at_line());
+            }
+        }
+        let count = usize::try_from(count).unwrap_or(usize::MAX);
+        Ok(self.ahead.iter().take(count).map(|(line, _)| line.as_slice()))
     }
 
     /// Goes to the next line that is not blank; false at the end of the text.
@@ -46,8 +85,7 @@ impl<'i, 'a> Lines<'i, 'a> {
         if self.advance()? {
             return Ok(());
         }
-        let kind = ErrorKind::Truncated { what: what.to_owned(), needed: 1, left: 0 };
-        Err(Fault { place: Some(self.place()), kind })
+        Err(Fault::missing(self.place(), what))
     }
 
     /// Lets the line that was read last be the next one again.
@@ -62,7 +100,7 @@ impl<'i, 'a> Lines<'i, 'a> {
 
     /// Where the line that was read last is.
     pub(crate) fn place(&self) -> Place {
-        self.input.at_line()
+        self.place
     }
 
     /// Whether the length of the text is known, and the rest can hold `rows` rows of `columns`
@@ -71,8 +109,9 @@ impl<'i, 'a> Lines<'i, 'a> {
     /// Only then may room for so many rows be made at once.
     pub(crate) fn can_hold(&self, rows: u64, columns: usize) -> bool {
         let needed = rows.checked_mul(2).and_then(|bytes| bytes.checked_mul(columns as u64));
-        // A line may be held, and the last one may lack its end.
-        let margin = self.line.len() as u64 + 3;
+        // Some lines are read already, each with an end of up to two bytes; the last may lack one.
+        let ahead: u64 = self.ahead.iter().map(|(line, _)| line.len() as u64 + 2).sum();
+        let margin = self.line.len() as u64 + 3 + ahead;
         match (needed, self.input.remaining()) {
             (Some(needed), Some(left)) => needed <= left.saturating_add(margin),
             _ => false,
@@ -135,6 +174,38 @@ fn fast_float2_f64((buffer, length): ([u8; FORTRAN_MAX], usize)) -> Option<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_seen_ahead_come_all_the_same() {
+        let text = b"a\nb\n\nc";
+        for count in 0..6 {
+            let mut input = Input::new(Box::new(&text[..]), None);
+            let mut lines = Lines::new(&mut input);
+            lines.advance().unwrap();
+            let seen: Vec<_> = lines.look_ahead(count).unwrap().map(<[u8]>::to_vec).collect();
+            let all = [b"b".to_vec(), Vec::new(), b"c".to_vec()];
+            let count = usize::try_from(count).unwrap();
+            assert_eq!(seen, all[..count.min(3)]);
+            lines.hold();
+            let mut next = || {
+                let found = lines.advance().unwrap();
+                (found.then(|| lines.text().to_vec()), lines.place())
+            };
+            for (index, line) in [b"a".to_vec()].into_iter().chain(all).enumerate() {
+                assert_eq!(next(), (Some(line), Place::Line(index as u64 + 1)));
+            }
+            assert_eq!([next(), next()], [(None, Place::Line(5)), (None, Place::Line(5))]);
+        }
+    }
+
+    #[test]
+    fn looking_ahead_has_an_end() {
+        let text = "1 2 3\n".repeat(100_000);
+        let mut input = Input::new(Box::new(text.as_bytes()), None);
+        let mut lines = Lines::new(&mut input);
+        lines.advance().unwrap();
+        assert_eq!(lines.look_ahead(u64::MAX).unwrap().count(), AHEAD_BYTES.div_ceil(6));
+    }
 
     #[test]
     fn numbers_are_read_as_programs_write_them() {

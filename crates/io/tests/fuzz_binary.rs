@@ -4,54 +4,19 @@
 #![expect(clippy::cast_possible_truncation, reason = "the numbers of tests are small")]
 #![expect(clippy::unwrap_used, reason = "a test may fail")]
 
+mod common;
+
+use common::with_peak;
 use flate2::{Compression, write::GzEncoder};
 use proptest::{collection::vec, prelude::*, sample::Index};
 use puncta_io::{Format, ReadOptions};
-use std::{
-    alloc::{GlobalAlloc, Layout, System},
-    cell::Cell,
-    io::Write,
-};
+use std::io::Write;
 
 /// How many bytes a reader may have at once for its buffers and those of its decoder.
 const BUFFERS: usize = 2 << 20;
 
 /// How many bytes it may have for each byte of a file, all columns and growing vectors included.
 const BYTES_PER_BYTE: usize = 64;
-
-/// The allocator of the system, which also counts the bytes each thread has.
-struct Counting;
-
-thread_local! {
-    static NOW: Cell<usize> = const { Cell::new(0) };
-    static PEAK: Cell<usize> = const { Cell::new(0) };
-}
-
-/// Counts bytes. A thread may free what another one allocated, so nothing must underflow.
-fn count(more: usize, less: usize) {
-    let now = NOW.get().saturating_add(more).saturating_sub(less);
-    NOW.set(now);
-    PEAK.set(PEAK.get().max(now));
-}
-
-#[expect(unsafe_code, reason = "the trait of allocators is unsafe; all calls are handed on")]
-// SAFETY: each call is handed on to the allocator of the system as it is.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count(layout.size(), 0);
-        // SAFETY: the caller keeps the contract of this very method.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        count(0, layout.size());
-        // SAFETY: as above.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// A change of a file.
 #[derive(Clone, Debug)]
@@ -291,10 +256,7 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 
 /// Reads a file that has `length` bytes, and checks how much memory that took.
 fn read(options: &ReadOptions, bytes: &[u8], length: usize) -> Option<String> {
-    let before = NOW.get();
-    PEAK.set(before);
-    let loaded = options.read_bytes("a", bytes);
-    let taken = PEAK.get() - before;
+    let (loaded, taken) = with_peak(|| options.read_bytes("a", bytes));
     assert!(taken <= BUFFERS + BYTES_PER_BYTE * length, "{taken} bytes for {length}");
     match loaded {
         Ok(loaded) => {

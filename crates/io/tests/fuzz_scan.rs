@@ -3,50 +3,18 @@
 
 #![expect(clippy::unwrap_used, reason = "this is a test")]
 
+mod common;
+
+use common::with_peak;
 use flate2::{Compression, write::GzEncoder};
 use laz::{LasZipCompressor, LazItemRecordBuilder, LazVlr, LazVlrBuilder};
 use proptest::prelude::*;
 use puncta_io::{Format, ReadOptions, Scalars};
 use std::{
-    alloc::{GlobalAlloc, Layout, System},
-    cell::Cell,
     io::{Cursor, Seek, SeekFrom, Write},
     panic,
     sync::OnceLock,
 };
-
-/// Counts the bytes that a thread has allocated.
-struct Counting;
-
-thread_local! {
-    static NOW: Cell<isize> = const { Cell::new(0) };
-    static PEAK: Cell<isize> = const { Cell::new(0) };
-}
-
-fn count(bytes: isize) {
-    let now = NOW.get() + bytes;
-    NOW.set(now);
-    PEAK.set(PEAK.get().max(now));
-}
-
-#[expect(unsafe_code, reason = "an allocator is unsafe by nature; this one passes all on")]
-// SAFETY: all calls go to the system's allocator as they are.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count(layout.size() as isize);
-        // SAFETY: the caller keeps the promises of this method.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        count(-(layout.size() as isize));
-        // SAFETY: the caller keeps the promises of this method.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// The bytes a reader may take whatever the file: buffers, and the models of the decoder.
 const FIXED: usize = 12 << 20;
@@ -335,10 +303,7 @@ fn quiet() {
 /// Reads a file; checks what comes of it, and how much memory that took.
 fn read(options: &ReadOptions, bytes: &[u8], length: usize) {
     quiet();
-    let before = NOW.get();
-    PEAK.set(before);
-    let result = options.read_bytes("file", bytes);
-    let taken = usize::try_from(PEAK.get() - before).unwrap_or(0);
+    let (result, taken) = with_peak(|| options.read_bytes("file", bytes));
     assert!(taken <= FIXED + 256 * length, "{taken} bytes for a file of {length}");
     if let Ok(loaded) = result {
         loaded.scene.validate().unwrap();

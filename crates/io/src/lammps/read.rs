@@ -106,7 +106,7 @@ fn read_frame(
     let named = (frame.names.as_slice(), frame.place);
     let layout = Layout::new(named, lines.text(), frame.cell, options)?;
     let mut values = layout.table.values();
-    let mut atoms = Atoms::new(options, &layout.table.columns());
+    let mut atoms = Atoms::of_table(options, &layout.table);
     let has_ids =
         layout.table.roles.iter().any(|role| matches!(role, Role::Id | Role::IdScalar(_)));
     let mut ids = Vec::new();

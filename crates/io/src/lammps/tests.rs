@@ -208,7 +208,7 @@ fn wrong_heads_are_told() {
         "dump: there is no frame 0: the file has 0, counted from 0"
     );
     let cut = "ITEM: NUMBER OF ATOMS\n";
-    let error = "line 2: the file ends in the number of atoms: 1 bytes are needed, 0 are left";
+    let error = "line 2: the file ends before the number of atoms";
     assert_eq!(fail(cut), format!("dump, {error}"));
     let none = good.replacen("\n2\n", "\n0\n", 1);
     assert_eq!(fail(&none), "dump: there is nothing to draw: 0 records were skipped");

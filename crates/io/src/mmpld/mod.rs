@@ -38,7 +38,7 @@ pub(crate) use write::write;
 use crate::{
     ReadOptions,
     builder::{Builder, Columns, Precision, Report},
-    error::Fault,
+    error::{Fault, Problem},
     input::Input,
 };
 use header::FileHeader;
@@ -83,8 +83,9 @@ fn read_lists(
         let form =
             if deviating.next_if_eq(&index).is_some() { Form::Deviating } else { Form::Specified };
         let list = ListHeader::read(input, file, form)?;
-        if list.types.vertex == Vertex::None && list.count > 0 {
-            builder.warn("particles without positions were left out");
+        if list.types.vertex == Vertex::None {
+            let lost = (list.place, list.count);
+            builder.skip_many(Problem::Position, lost, || "none".to_owned())?;
         }
         particles.read(input, &list, builder)?;
         let bytes = list.cluster_bytes(input, file, form)?;

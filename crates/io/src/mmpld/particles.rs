@@ -2,7 +2,7 @@
 
 use super::list::{Color, ListHeader, Vertex};
 use crate::{
-    builder::{Builder, Row},
+    builder::{Builder, Row, to_f32},
     color::{Colors, WHITE},
     error::{Fault, Place},
     input::Input,
@@ -136,11 +136,7 @@ fn read_color(bytes: &[u8], list: &ListHeader, colors: &mut Colors) -> ([u8; 4],
         Color::FloatRgba => colors.color([0, 4, 8, 12].map(|at| single(bytes, at))),
         Color::ShortRgba => colors.color([0, 2, 4, 6].map(|at| part(bytes, at))),
         Color::FloatI => return (WHITE, f32::from_le_bytes(number(bytes, 0))),
-        Color::DoubleI => {
-            #[expect(clippy::cast_possible_truncation, reason = "scalars are f32")]
-            let intensity = double(bytes, 0) as f32;
-            return (WHITE, intensity);
-        }
+        Color::DoubleI => return (WHITE, to_f32(double(bytes, 0))),
     };
     (color, f32::NAN)
 }

@@ -18,6 +18,7 @@ use super::{
     list::{Color, Types, Vertex},
 };
 use crate::{
+    builder::to_f32,
     color::WHITE,
     error::{ErrorKind, Fault},
 };
@@ -244,9 +245,4 @@ fn above(x: f64) -> f32 {
 
 fn write_floats(out: &mut impl Write, floats: &[f32]) -> io::Result<()> {
     floats.iter().try_for_each(|float| out.write_all(&float.to_le_bytes()))
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
-fn to_f32(x: f64) -> f32 {
-    x as f32
 }

@@ -14,7 +14,10 @@ use std::ops::Range;
 
 /// The scalars, and the bytes of a line that hold them.
 const SCALARS: [(&str, Range<usize>); 3] =
-    [("occupancy", 54..60), ("b_factor", 60..66), ("residue", 22..26)];
+    [("occupancy", 54..60), ("b_factor", 60..66), ("residue", 22..RESIDUE_END)];
+
+/// The byte behind the number of a residue.
+const RESIDUE_END: usize = 26;
 
 /// What a line is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,8 +89,9 @@ impl Rows<'_> {
             Err(problem) => return self.atoms.skip(problem, place, || quote(coordinates(line))),
         };
         let scalars = SCALARS.map(|(_, range)| {
+            let is_whole = is_whole(line, &range);
             let text = field(line, range).trim_ascii();
-            let value = number_f32(text);
+            let value = number_f32(text).filter(|_| is_whole);
             self.has_odd_scalars |= value.is_none() && !text.is_empty();
             value.unwrap_or(f32::NAN)
         });
@@ -131,6 +135,16 @@ fn position(line: &[u8]) -> Result<[f64; 3], Problem> {
         *coordinate = number(text.trim_ascii()).ok_or(Problem::Number)?;
     }
     Ok(position)
+}
+
+/// Whether all of a number is in the field of a scalar.
+fn is_whole(line: &[u8], range: &Range<usize>) -> bool {
+    if range.end == RESIDUE_END {
+        // A letter that distinguishes residues may follow, and a chain stands before.
+        return !line.get(RESIDUE_END).is_some_and(u8::is_ascii_digit);
+    }
+    let point = field(line, range.clone()).iter().position(|&byte| byte == b'.');
+    point == Some(3) || !(touches(line, range.start) || touches(line, range.end))
 }
 
 /// Whether there is something both before and after the start of a field.
@@ -287,6 +301,33 @@ END
         assert!(loaded.scene.scalar("b_factor").unwrap().values[0].is_nan());
         let warning = "values of occupancy, b_factor or residue that are no numbers are NaN";
         assert_eq!(loaded.report.warnings, [warning]);
+    }
+
+    #[test]
+    fn scalars_that_do_not_fit_are_never_read_as_others() {
+        let scalars = |line: &str| {
+            let loaded = read(line);
+            let value = |name: &str| loaded.scene.scalar(name).unwrap().values[0];
+            let is_told = !loaded.report.warnings.is_empty();
+            let found = ["occupancy", "b_factor", "residue"].map(value);
+            (found.map(|value| (!value.is_nan()).then_some(value)), is_told)
+        };
+        let line = |residue: &str, rest: &str| {
+            atom(" CA ", "1", ORIGIN, rest).replace("A   1    ", &format!("A{residue:8}"))
+        };
+        for (residue, rest, expected) in [
+            ("9999", "  1.00  0.50", [Some(1.0), Some(0.5), Some(9999.0)]),
+            ("10000", "  1.00  0.50", [Some(1.0), Some(0.5), None]),
+            ("1000B", "100.00100.00", [Some(100.0), Some(100.0), Some(1000.0)]),
+            ("   1", "  1.001000.00", [Some(1.0), None, Some(1.0)]),
+            ("   1", "1000.00  1.00", [None, None, Some(1.0)]),
+            ("   1", "  1.00123.4567", [Some(1.0), Some(123.45), Some(1.0)]),
+            ("   1", "  1.00 23.456", [Some(1.0), Some(23.45), Some(1.0)]),
+            ("   1", "  1    2    C", [Some(1.0), Some(2.0), Some(1.0)]),
+        ] {
+            let is_told = expected.contains(&None);
+            assert_eq!(scalars(&line(residue, rest)), (expected, is_told), "{residue} {rest}");
+        }
     }
 
     #[test]

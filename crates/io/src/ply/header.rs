@@ -61,7 +61,7 @@ impl Header {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
         loop {
-            input.expect_line(&mut line, "the header, before end_header")?;
+            input.expect_line(&mut line, "the line end_header")?;
             let place = input.at_line();
             let (word, rest) = split_word(&line);
             match word {

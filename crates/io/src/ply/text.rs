@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     builder::Builder,
-    error::{ErrorKind, Fault, Problem, quote},
+    error::{Fault, Problem, quote},
     input::Input,
 };
 
@@ -73,9 +73,8 @@ fn next_line(
         }
     }
     let Element { name, count, .. } = element;
-    let what = format!("element {name}, of which it has {index} and should have {count}");
-    let kind = ErrorKind::Truncated { what, needed: 1, left: 0 };
-    Err(Fault { place: Some(input.at_line()), kind })
+    let what = format!("row {} of the {count} of element {name}", index.saturating_add(1));
+    Err(Fault::missing(input.at_line(), what))
 }
 
 /// Parses the numbers of a row, or tells what is wrong with which text.

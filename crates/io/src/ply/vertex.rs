@@ -5,7 +5,7 @@ use super::{
     number::Number,
 };
 use crate::{
-    builder::{Builder, Columns, Row},
+    builder::{Builder, Columns, Row, to_f32},
     color::{Colors, WHITE},
     error::{Fault, quote},
 };
@@ -122,8 +122,7 @@ impl Vertex {
             self.colors.color([red, green, blue, alpha.map_or(1.0, part)])
         });
         self.scalar_values.clear();
-        #[expect(clippy::cast_possible_truncation, reason = "scalars are f32")]
-        self.scalar_values.extend(self.scalars.iter().map(|&index| values[index] as f32));
+        self.scalar_values.extend(self.scalars.iter().map(|&index| to_f32(values[index])));
         let element = self.element.map_or(0, |index| {
             let element = to_byte(values[index]);
             self.not_elements += u64::from(element.is_none());

@@ -17,7 +17,9 @@ use super::{
 };
 use crate::{
     builder::{Builder, to_f32},
+    color::Colors,
     error::Fault,
+    table::Table,
 };
 use puncta_core::Scalar;
 
@@ -138,6 +140,10 @@ impl File<'_, '_, '_> {
         wanted.retain(|(name, _)| self.options.wants(name));
         if wanted.is_empty() && !is_radius && !is_color {
             return self.source.skip(*kind, total, name);
+        }
+        if !is_radius && !is_color {
+            self.columns += wanted.len() as u64;
+            Table::check(self.columns, self.source.place())?;
         }
         self.source.start(*kind, total, name)?;
         if is_radius {
@@ -273,33 +279,28 @@ fn read_colors(
     count: u64,
 ) -> Result<(), Fault> {
     let is_fraction = array.purpose == Purpose::Colors && source.is_text();
-    let scale = if is_fraction { 255.0 } else { 1.0 };
-    let mut colors = Vec::with_capacity(builder.kept());
+    let one = if is_fraction { 1.0 } else { 255.0 };
+    let (mut changed, mut colors) = (Colors::default(), Vec::with_capacity(builder.kept()));
     let mut row = 0;
     source.tuples((array.kind, width(array)), count, &array.name, |tuple, _| {
         if builder.keeps(row) {
             let color = match *tuple {
-                [gray] => [gray, gray, gray, 255.0 / scale],
+                [gray] => [gray, gray, gray, one],
                 [gray, alpha] => [gray, gray, gray, alpha],
-                [red, green, blue] => [red, green, blue, 255.0 / scale],
+                [red, green, blue] => [red, green, blue, one],
                 [red, green, blue, alpha, ..] => [red, green, blue, alpha],
-                [] => [255.0 / scale; 4],
+                [] => [one; 4],
             };
-            colors.push(color.map(|channel| to_byte(channel * scale)));
+            colors.push(changed.color(color.map(|part| part / one)));
         }
         row += 1;
         Ok(())
     })?;
+    changed.warn(builder);
     builder.add_colors(colors);
     Ok(())
 }
 
 fn width(array: &Array) -> usize {
     usize::try_from(array.width).unwrap_or(1)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "the conversion clamps")]
-#[expect(clippy::cast_sign_loss, reason = "the conversion clamps")]
-fn to_byte(channel: f64) -> u8 {
-    channel.round() as u8
 }

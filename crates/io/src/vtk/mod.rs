@@ -57,7 +57,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &ReadOptions) -> Result<(Scen
         _ => return Err(source.invalid("the third line must be ASCII or BINARY")),
     }
     let (rows, section, builder) = (0, Section::Geometry, None);
-    let mut file = File { source, options, version, rows, section, builder };
+    let mut file = File { source, options, version, rows, section, builder, columns: 0 };
     while let Some(keyword) = file.source.keyword()? {
         file.read_part(&keyword)?;
     }
@@ -109,6 +109,8 @@ struct File<'s, 'i, 'a> {
     section: Section,
     /// Once the points are there.
     builder: Option<Builder<'s>>,
+    /// How many columns became scalars.
+    columns: u64,
 }
 
 impl File<'_, '_, '_> {
@@ -138,7 +140,7 @@ impl File<'_, '_, '_> {
     }
 
     fn skip_words(&mut self, count: usize, what: &str) -> Result<(), Fault> {
-        (0..count).try_for_each(|_| self.source.expect(what).map(|_| ()))
+        (0..count).try_for_each(|_| self.source.value(what).map(|_| ()))
     }
 
     fn read_dataset(&mut self) -> Result<(), Fault> {

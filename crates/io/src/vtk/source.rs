@@ -6,7 +6,7 @@ file they are big-endian, and start behind the end of the line that announces th
 */
 
 use crate::{
-    error::{ErrorKind, Fault, Place, quote},
+    error::{Fault, Place, quote},
     input::Input,
 };
 
@@ -113,7 +113,7 @@ impl<'i, 'a> Source<'i, 'a> {
 
     /// The next word in capitals, as keywords are written; `None` at the end of the file.
     pub(super) fn keyword(&mut self) -> Result<Option<String>, Fault> {
-        if !std::mem::take(&mut self.is_held) && !self.input.word(&mut self.word)? {
+        if !self.advance()? {
             return Ok(None);
         }
         Ok(Some(String::from_utf8_lossy(&self.word).to_ascii_uppercase()))
@@ -126,11 +126,23 @@ impl<'i, 'a> Source<'i, 'a> {
 
     /// The next word.
     pub(super) fn expect(&mut self, what: &str) -> Result<&[u8], Fault> {
-        if !std::mem::take(&mut self.is_held) && !self.input.word(&mut self.word)? {
-            let kind = ErrorKind::Truncated { what: what.to_owned(), needed: 1, left: 0 };
-            return Err(Fault { place: Some(self.place()), kind });
+        if self.advance()? {
+            return Ok(&self.word);
         }
-        Ok(&self.word)
+        Err(Fault::missing(self.place(), what))
+    }
+
+    /// The next word, which is one of the values of `what`.
+    pub(super) fn value(&mut self, what: &str) -> Result<&[u8], Fault> {
+        if self.advance()? {
+            return Ok(&self.word);
+        }
+        Err(Fault::missing(self.place(), last_of(what)))
+    }
+
+    /// Goes to the next word; false at the end of the file.
+    fn advance(&mut self) -> Result<bool, Fault> {
+        Ok(std::mem::take(&mut self.is_held) || self.input.word(&mut self.word)?)
     }
 
     /// The next word, with characters that were written as `%` and two hexadecimal digits.
@@ -253,17 +265,18 @@ impl<'i, 'a> Source<'i, 'a> {
         match (kind, self.is_text) {
             (Kind::Text, true) => {
                 self.rest_of_line()?;
-                (0..count).try_for_each(|_| self.input.expect_line(&mut self.word, what))
+                let what = last_of(what);
+                (0..count).try_for_each(|_| self.input.expect_line(&mut self.word, &what))
             }
             (Kind::Text, false) => (0..count).try_for_each(|_| self.skip_text(what)),
-            (_, true) => (0..count).try_for_each(|_| self.expect(what).map(|_| ())),
+            (_, true) => (0..count).try_for_each(|_| self.value(what).map(|_| ())),
             (_, false) => self.input.skip(kind.bytes(count), what),
         }
     }
 
     /// A value in a text.
     fn number(&mut self, what: &str) -> Result<f64, Fault> {
-        let word = self.expect(what)?;
+        let word = self.value(what)?;
         if let Ok(number) = fast_float2::parse(word) {
             return Ok(number);
         }
@@ -319,6 +332,11 @@ impl<'i, 'a> Source<'i, 'a> {
         self.input.bytes(tail, what)?;
         self.input.skip(u64::from_be_bytes(bytes), what)
     }
+}
+
+/// The name of what is missing where the values of `what` are too few.
+fn last_of(what: &str) -> String {
+    format!("the last values of {what}")
 }
 
 /// Appends the values of `N` bytes each.

@@ -264,6 +264,26 @@ fn bytes_in_tuples_of_three_are_colors() {
 }
 
 #[test]
+fn colors_that_are_none_are_told() {
+    let parts = [
+        Line("POLYDATA"),
+        Line("POINTS 3 int"),
+        Values("int", &CORNERS),
+        Line("POINT_DATA 3"),
+        Line("COLOR_SCALARS rgb 3"),
+        Values("float", &[f64::NAN, 1.0, 1.0, 2.0, 0.5, -1.0, 0.0, 1.0, 0.2]),
+    ];
+    let loaded = read(&file(Form::Text, "4.0", &parts)).unwrap();
+    let colors = [[255; 4], [255, 128, 0, 255], [0, 255, 51, 255]];
+    assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec()));
+    let warnings = [
+        "1 colors are not a number; they are white",
+        "1 colors lie outside of 0..1 and were clamped",
+    ];
+    assert_eq!(loaded.report.warnings[..2], warnings);
+}
+
+#[test]
 fn rows_that_cannot_be_used_leave_all_columns() {
     let nan = f64::NAN;
     for form in FORMS {

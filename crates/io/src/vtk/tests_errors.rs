@@ -51,10 +51,7 @@ fn what_is_wrong_is_told() {
     for (text, expected) in [
         ("# vtk DataFile Version 6.0\n", format!("{first}, not \"# vtk DataFile Version 6.0\"")),
         ("# vtk DataFile Version x\n", format!("{first}, not \"# vtk DataFile Version x\"")),
-        (
-            "# vtk DataFile Version 3.0",
-            "line 2: the file ends in the title: 1 bytes are needed, 0 are left".into(),
-        ),
+        ("# vtk DataFile Version 3.0", "line 2: the file ends before the title".into()),
         (
             "# vtk DataFile Version 3.0\nt\nHTML\n",
             "line 3: the third line must be ASCII or BINARY, not \"HTML\"".into(),
@@ -83,7 +80,7 @@ fn what_is_wrong_is_told() {
         ),
         (
             "POINTS 2 float\n100 100 100 1\n",
-            "line 6: the file ends in POINTS: 1 bytes are needed, 0 are left",
+            "line 6: the file ends before the last values of POINTS",
         ),
         (&format!("{one}{one}"), "line 7: a file must have its points once, not \"POINTS\""),
         ("POINT_DATA 2", "line 5: the points with data must be the 0 points, not \"2\""),
@@ -140,6 +137,21 @@ fn what_is_wrong_in_binary_is_told_by_byte() {
     let error = ReadOptions::default().frame(1).read_bytes("a.vtk", head.as_bytes()).unwrap_err();
     let text = "a.vtk: there is no frame 1: the file has 1, counted from 0";
     assert_eq!(error.to_string(), text);
+}
+
+#[test]
+fn columns_without_end_are_refused() {
+    let head = format!("{HEAD}POINTS 1 float\n1 2 3\nPOINT_DATA 1\nFIELD f 60000\n");
+    let arrays: String = (0..60_000).map(|i| format!("a{i} 1 1 float\n1\n")).collect();
+    let error = read(&format!("{head}{arrays}")).unwrap_err().to_string();
+    // The first array is announced on line 9, the one too many 4096 arrays of two lines later.
+    assert_eq!(error, "a.vtk, line 8201: there must be at most 4096 columns, not 4097");
+    let wide: String = (0..500).map(|i| format!("a{i} 9 1 float\n1 2 3 4 5 6 7 8 9\n")).collect();
+    let error = read(&format!("{head}{wide}")).unwrap_err().to_string();
+    assert!(error.ends_with("there must be at most 4096 columns, not 4104"), "{error}");
+    let few: String = (0..4096).map(|i| format!("a{i} 1 1 float\n1\n")).collect();
+    let loaded = read(&format!("{}{few}", head.replace("60000", "4096"))).unwrap();
+    assert_eq!(loaded.scene.attributes.scalars.len(), 4096);
 }
 
 #[test]

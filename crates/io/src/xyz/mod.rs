@@ -8,7 +8,9 @@ follow each other. There is no standard, but one description that most programs 
 * **Plain XYZ**: a name, x, y and z in each line, in angstrom. The first row tells how many columns
   there are, and further ones that hold numbers become the scalars `column_5`, `column_6`, ...
   The name is a symbol, a label (`C12`, but `CA` is calcium), an atomic number or anything else.
-  Rows whose first column has a fraction have no name: they begin with x.
+  Rows have no name and begin with x if the first column of any of the first rows (those within
+  64 KiB) has a fraction, an exponent or a sign; a later row where a number other than a whole one
+  stands for the name is skipped and counted.
 * **Extended XYZ**: the comment has `Properties=species:S:1:pos:R:3:...`, which names the columns.
   `species` (also `element`, `Z`, ...), `pos`, `radius` and `color` (`R`: 0 to 1, `I`: 0 to 255) are
   what they say. Other numbers become scalars: `name` for one column, `name_x`, `name_y`, `name_z`

@@ -7,22 +7,32 @@ use crate::{
     text::{number, whole},
 };
 
-/// The table that the comment tells of, if any. A lattice is checked on the way.
-pub(super) fn table(
-    comment: &[u8],
-    place: Place,
-    options: &ReadOptions,
-) -> Result<Option<Table>, Fault> {
-    let (mut rest, mut found) = (comment, None);
-    while let Some((key, value)) = pair(&mut rest) {
+/// What a comment tells.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(super) struct Told {
+    /// The columns of the rows, if the comment is that of extended XYZ.
+    pub(super) table: Option<Table>,
+    /// What is wrong with the lattice of another one.
+    pub(super) warning: Option<String>,
+}
+
+/// Reads a comment. A lattice is checked on the way: where there are properties it must be right.
+pub(super) fn told(comment: &[u8], place: Place, options: &ReadOptions) -> Result<Told, Fault> {
+    let mut words = Words { rest: comment, unclosed: 0 };
+    let (mut table, mut lattice) = (None, Ok(()));
+    while let Some((key, value)) = words.pair() {
         let Some(value) = value else { continue };
         if key.eq_ignore_ascii_case(b"lattice") {
-            check_lattice(value, place)?;
-        } else if key.eq_ignore_ascii_case(b"properties") && found.is_none() {
-            found = Some(read(value, place, options)?);
+            lattice = lattice.and_then(|()| check_lattice(value, place));
+        } else if key.eq_ignore_ascii_case(b"properties") && table.is_none() {
+            table = Some(read(value, place, options)?);
         }
     }
-    Ok(found)
+    match lattice {
+        Err(fault) if table.is_some() => Err(fault),
+        Err(fault) => Ok(Told { table, warning: Some(format!("{place}: {}", fault.kind)) }),
+        Ok(()) => Ok(Told { table, warning: None }),
+    }
 }
 
 /// Whether a property of this name is something else than a scalar.
@@ -54,51 +64,89 @@ impl Meaning {
     }
 }
 
-/// Takes the next key off `rest`, and its value if it has one.
-fn pair<'a>(rest: &mut &'a [u8]) -> Option<(&'a [u8], Option<&'a [u8]>)> {
-    *rest = rest.trim_ascii_start();
-    if rest.is_empty() {
-        return None;
-    }
-    let key = word(rest, |byte| byte == b'=' || byte.is_ascii_whitespace());
-    let Some(value) = rest.trim_ascii_start().strip_prefix(b"=") else {
-        return Some((key, None));
-    };
-    *rest = value.trim_ascii_start();
-    Some((key, Some(word(rest, |byte| byte.is_ascii_whitespace()))))
+/// How many quotes and brackets without an end are looked at: each takes a look at all that
+/// follows, so a line full of them would take a time that grows with its square.
+const UNCLOSED_MAX: u32 = 16;
+
+/// The words of a comment.
+struct Words<'a> {
+    rest: &'a [u8],
+    /// How many quotes and brackets had no end.
+    unclosed: u32,
 }
 
-/// Takes a word off `rest`: what is in quotes or brackets, or all up to where `ends` holds.
-fn word<'a>(rest: &mut &'a [u8], ends: impl Fn(u8) -> bool) -> &'a [u8] {
-    let close = match rest.first() {
-        Some(quote @ (b'"' | b'\'')) => Some(*quote),
-        Some(b'{') => Some(b'}'),
-        _ => None,
-    };
-    if let Some(close) = close {
-        let inner = rest.get(1..).unwrap_or_default();
-        let mut escaped = false;
-        let end = inner.iter().position(|&byte| {
-            let closes = byte == close && !escaped;
-            escaped = byte == b'\\' && !escaped;
-            closes
-        });
-        let (word, after) = inner.split_at(end.unwrap_or(inner.len()));
-        *rest = after.get(1..).unwrap_or_default();
-        return word;
-    }
-    let mut depth = 0_u32;
-    let end = rest.iter().position(|&byte| {
-        match byte {
-            b'[' => depth = depth.saturating_add(1),
-            b']' => depth = depth.saturating_sub(1),
-            _ => {}
+impl<'a> Words<'a> {
+    /// Takes the next key, and its value if it has one.
+    fn pair(&mut self) -> Option<(&'a [u8], Option<&'a [u8]>)> {
+        self.rest = self.rest.trim_ascii_start();
+        if self.rest.is_empty() {
+            return None;
         }
-        depth == 0 && ends(byte)
+        let key = self.word(|byte| byte == b'=' || byte.is_ascii_whitespace());
+        let Some(value) = self.rest.trim_ascii_start().strip_prefix(b"=") else {
+            return Some((key, None));
+        };
+        self.rest = value.trim_ascii_start();
+        Some((key, Some(self.word(|byte| byte.is_ascii_whitespace()))))
+    }
+
+    /// Takes a word: what is in quotes or brackets, or all up to where `ends` holds. A quote or
+    /// bracket without an end is a character as any other.
+    fn word(&mut self, ends: impl Fn(u8) -> bool) -> &'a [u8] {
+        let rest = self.rest;
+        if self.unclosed < UNCLOSED_MAX {
+            if let Some(closed) = quoted(rest) {
+                if let Some((word, after)) = closed {
+                    self.rest = after;
+                    return word;
+                }
+                self.unclosed += 1;
+            } else {
+                let mut depth = 0_u32;
+                let end = rest.iter().position(|&byte| {
+                    match byte {
+                        b'[' => depth = depth.saturating_add(1),
+                        b']' => depth = depth.saturating_sub(1),
+                        _ => {}
+                    }
+                    depth == 0 && ends(byte)
+                });
+                if depth == 0 {
+                    return self.take(end);
+                }
+                self.unclosed += 1;
+            }
+        }
+        self.take(rest.iter().position(|&byte| ends(byte)))
+    }
+
+    /// Takes what is before this index, or all.
+    fn take(&mut self, end: Option<usize>) -> &'a [u8] {
+        let (word, after) = self.rest.split_at(end.unwrap_or(self.rest.len()));
+        self.rest = after;
+        word
+    }
+}
+
+/// What is in the quotes or braces at the start, and what follows: `Some(None)` if they have no
+/// end, `None` if there are none.
+fn quoted(text: &[u8]) -> Option<Option<(&[u8], &[u8])>> {
+    let (&open, inner) = text.split_first()?;
+    let close = match open {
+        b'"' | b'\'' => open,
+        b'{' => b'}',
+        _ => return None,
+    };
+    let mut escaped = false;
+    let end = inner.iter().position(|&byte| {
+        let closes = byte == close && !escaped;
+        escaped = byte == b'\\' && !escaped;
+        closes
     });
-    let (word, after) = rest.split_at(end.unwrap_or(rest.len()));
-    *rest = after;
-    word
+    Some(end.map(|end| {
+        let (word, after) = inner.split_at(end);
+        (word, after.get(1..).unwrap_or_default())
+    }))
 }
 
 /// Checks that a lattice is three vectors.
@@ -184,9 +232,9 @@ mod tests {
     use super::*;
 
     fn roles(comment: &str) -> Result<(Vec<Role>, Vec<String>), String> {
-        let table = table(comment.as_bytes(), Place::Line(2), &ReadOptions::default());
-        let table = table.map_err(|fault| fault.in_file("a.xyz").to_string())?;
-        Ok(table.map(|table| (table.roles, table.names)).unwrap_or_default())
+        let told = told(comment.as_bytes(), Place::Line(2), &ReadOptions::default());
+        let told = told.map_err(|fault| fault.in_file("a.xyz").to_string())?;
+        Ok(told.table.map(|table| (table.roles, table.names)).unwrap_or_default())
     }
 
     #[test]
@@ -230,14 +278,48 @@ mod tests {
     }
 
     #[test]
+    fn quotes_and_brackets_without_an_end_do_not_swallow_the_rest() {
+        let many = "'a [b c= {d ".repeat(100);
+        for start in
+            ["title=\"a b ", "'tis ", "{ a ", "x=[1 2 ", "'tis x=[1 y={2 \"", "a[=1 ", &many]
+        {
+            let comment = format!("{start} Properties=pos:R:3");
+            assert_eq!(roles(&comment).unwrap().0.len(), 3, "{comment}");
+        }
+        let comment = "x=[1 'a Lattice=\"1 0 0 0 1 0 0 0 1\" y=[1 2] Properties=\"pos:R:3\"";
+        assert_eq!(roles(comment).unwrap().0.len(), 3);
+    }
+
+    #[test]
+    fn a_line_of_quotes_without_an_end_takes_no_time() {
+        for text in ["'a \\\"[ ", "[ ", "{ ", "a=[ "] {
+            let comment = text.repeat((1 << 20) / text.len());
+            let start = std::time::Instant::now();
+            assert_eq!(roles(&comment), Ok(Default::default()));
+            assert!(start.elapsed().as_secs() < 5, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_word_like_lattice_in_another_comment_is_no_error() {
+        for (value, wrong) in [("5.43", "1"), ("\"1 2 b\"", "\"b\""), ("", "0")] {
+            let comment = format!("lattice={value}");
+            let told = told(comment.as_bytes(), Place::Line(2), &ReadOptions::default()).unwrap();
+            let warning = format!("line 2: Lattice must have nine numbers, not {wrong}");
+            assert_eq!(told, Told { table: None, warning: Some(warning) });
+        }
+    }
+
+    #[test]
     fn wrong_headers_are_told() {
         let lattice = "Lattice must have nine numbers, not";
         let columns = "the number of columns of the property pos must be 1 or more, not";
         for (comment, error) in [
-            ("Lattice=\"1 2 3\"", format!("{lattice} 3")),
-            ("Lattice=\"1 0 0 0 1 0 0 0 b\"", format!("{lattice} \"b\"")),
-            ("Lattice=\"1 0 0 0 1 0 0 0 inf\"", format!("{lattice} \"inf\"")),
-            ("Lattice=", format!("{lattice} 0")),
+            ("Lattice=\"1 2 3\" Properties=pos:R:3", format!("{lattice} 3")),
+            ("Properties=pos:R:3 Lattice='1 0 0 0 1 0 0 0 b'", format!("{lattice} \"b\"")),
+            ("Lattice=[1 0 0 0 1 0 0 0 inf] Properties=pos:R:3", format!("{lattice} \"inf\"")),
+            ("Properties=pos:R:3 Lattice=", format!("{lattice} 0")),
+            ("Lattice=\"1 0 Properties=pos:R:3", format!("{lattice} \"\\\"1\"")),
             ("Properties=pos:R:0", format!("{columns} \"0\"")),
             ("Properties=pos:R:-3", format!("{columns} \"-3\"")),
             ("Properties=pos:R:3:q:R:9999", "there must be at most 4096 columns, not 10002".into()),

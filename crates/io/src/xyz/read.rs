@@ -7,10 +7,13 @@ use crate::{
     builder::Report,
     error::{ErrorKind, Fault, Place, Problem, quote},
     input::Input,
-    table::{Role, Table, Values},
+    table::{Role, Table, Values, is_kind},
     text::{self, Lines, columns, number, whole},
 };
 use puncta_core::Scene;
+
+/// What a file starts with.
+const FIRST: &str = "the first line must be the number of atoms, or a row of coordinates";
 
 /// Reads a frame.
 pub(crate) fn read(input: &mut Input<'_>, options: &ReadOptions) -> Result<(Scene, Report), Fault> {
@@ -39,14 +42,32 @@ enum Shape {
 }
 
 impl Shape {
-    /// The shape of a row of a frame.
+    /// The shape of a row of a frame, if there was no other row.
     fn in_frame(line: &[u8]) -> Option<Self> {
-        let first = columns(line).next()?;
-        let is_name = number(first).is_none() || whole(first).is_some();
-        match (is_name, Self::Named.fits(line)) {
-            (true, true) => Some(Self::Named),
-            _ => Self::Bare.fits(line).then_some(Self::Bare),
+        [Self::Named, Self::Bare].into_iter().find(|shape| shape.may_be(line))
+    }
+
+    /// Whether a row of a frame may have this shape.
+    fn may_be(self, line: &[u8]) -> bool {
+        let is_name = columns(line).next().is_some_and(is_kind);
+        (self == Self::Bare || is_name) && self.fits(line)
+    }
+
+    /// The shape of the row that was read last and of the `more` that may follow.
+    ///
+    /// A whole number at the start may be x or a name: the rows after it tell, as far as they are
+    /// looked at.
+    fn of_rows(lines: &mut Lines<'_, '_>, more: u64) -> Result<Option<Self>, Fault> {
+        let row = lines.text();
+        let Some(shape) = Self::in_frame(row) else { return Ok(None) };
+        if shape == Self::Bare || !Self::Bare.may_be(row) {
+            return Ok(Some(shape));
         }
+        let count = columns(row).count();
+        let is_bare = lines
+            .look_ahead(more)?
+            .any(|row| columns(row).count() == count && Self::in_frame(row) == Some(Self::Bare));
+        Ok(Some(if is_bare { Self::Bare } else { shape }))
     }
 
     /// The shape of a row of a file without frames.
@@ -70,6 +91,7 @@ impl Shape {
         let mut table = Table::default();
         for (column, text) in columns(row).enumerate() {
             match column.checked_sub(self.start()) {
+                None if number(text).is_some() => table.push(Role::Kind),
                 None => table.push(Role::Element),
                 Some(axis @ 0..3) => table.push(Role::Axis(axis)),
                 Some(_) if number(text).is_some() => {
@@ -103,18 +125,18 @@ fn ends_frame(line: &[u8]) -> bool {
     line.is_empty() || whole(line).is_some()
 }
 
-/// Whether two lines may be rows of one frame.
-fn are_alike(a: &[u8], b: &[u8]) -> bool {
-    Shape::in_frame(a) == Shape::in_frame(b) && columns(a).count() == columns(b).count()
-}
-
 /// Goes to the frame of this index, and over its number of atoms, which is returned.
 fn seek(lines: &mut Lines<'_, '_>, frame: u64) -> Result<u64, Fault> {
     for frames in 0.. {
         if !lines.advance_to_text()? {
             return Err(ErrorKind::NoSuchFrame { frame, frames }.into());
         }
-        let count = text::count(lines.text(), lines.place(), "the number of atoms")?;
+        let line = lines.text().trim_ascii();
+        // Commas between numbers, say: it may be another kind of file altogether.
+        if frames == 0 && number(line).is_none() {
+            return Err(Fault::invalid(lines.place(), FIRST, quote(line)));
+        }
+        let count = text::count(line, lines.place(), "the number of atoms")?;
         if frames == frame {
             return Ok(count);
         }
@@ -126,12 +148,12 @@ fn seek(lines: &mut Lines<'_, '_>, frame: u64) -> Result<u64, Fault> {
 /// Passes over the rest of a frame of `count` atoms.
 fn pass(lines: &mut Lines<'_, '_>, count: u64) -> Result<(), Fault> {
     let second = second_line(lines, count)?;
-    for found in u64::from(second.is_candidate)..count {
+    for found in u64::from(second.shape.is_some())..count {
         if !lines.advance()? {
             return Err(text::too_few(lines.place(), count, found));
         }
     }
-    if second.is_candidate && lines.advance()? && ends_frame(lines.text()) {
+    if second.shape.is_some() && lines.advance()? && ends_frame(lines.text()) {
         lines.hold();
     }
     Ok(())
@@ -141,8 +163,8 @@ fn pass(lines: &mut Lines<'_, '_>, count: u64) -> Result<(), Fault> {
 struct Second {
     line: Vec<u8>,
     place: Place,
-    /// Whether it may be the first atom.
-    is_candidate: bool,
+    /// What its shape and that of all rows is if it is the first atom; `None` if it is not.
+    shape: Option<Shape>,
 }
 
 /// Reads the second line of a frame of `count` atoms.
@@ -151,17 +173,22 @@ fn second_line(lines: &mut Lines<'_, '_>, count: u64) -> Result<Second, Fault> {
         return Err(text::too_few(lines.place(), count, 0));
     }
     let (line, place) = (lines.text().to_vec(), lines.place());
-    let mut is_candidate = count > 0 && Shape::in_frame(&line).is_some();
-    if is_candidate {
+    let mut shape = Shape::in_frame(&line).filter(|_| count > 0);
+    if shape.is_some() {
         if lines.advance()? {
-            let single = count == 1 && ends_frame(lines.text());
-            is_candidate = single || are_alike(&line, lines.text());
+            let is_single = count == 1 && ends_frame(lines.text());
+            if !is_single {
+                // It must be like the other rows, and does not tell what these are.
+                let is_as_long = columns(&line).count() == columns(lines.text()).count();
+                let rows = if is_as_long { Shape::of_rows(lines, count - 1)? } else { None };
+                shape = rows.filter(|rows| rows.may_be(&line));
+            }
             lines.hold();
         } else if count > 1 {
             return Err(text::too_few(lines.place(), count, 1));
         }
     }
-    Ok(Second { line, place, is_candidate })
+    Ok(Second { line, place, shape })
 }
 
 /// Reads the rest of a frame of `count` atoms.
@@ -173,12 +200,13 @@ fn read_frame(
     let mut second = second_line(lines, count)?;
     let mut rows = count;
     let mut first_bad = None;
-    let table = match properties::table(&second.line, second.place, options)? {
+    let told = properties::told(&second.line, second.place, options)?;
+    let table = match told.table {
         Some(table) => {
-            second.is_candidate = false;
+            second.shape = None;
             table
         }
-        None => match Shape::in_frame(&second.line).filter(|_| second.is_candidate) {
+        None => match second.shape {
             Some(shape) => shape.table(&second.line, second.place, options)?,
             None => first_table(lines, options, count, &mut first_bad)?,
         },
@@ -187,20 +215,21 @@ fn read_frame(
     if lines.can_hold(count, rest.table.roles.len()) {
         rest.atoms.reserve(count)?;
     }
+    told.warning.into_iter().for_each(|warning| rest.atoms.warn(warning));
     if let Some(bad) = first_bad {
         rows -= bad.count;
         for _ in 0..bad.count {
             rest.atoms.skip(Problem::Columns, bad.place, || bad.text.clone())?;
         }
     }
-    rows -= u64::from(second.is_candidate);
+    rows -= u64::from(second.shape.is_some());
     for found in count - rows..count {
         if !lines.advance()? {
             return Err(text::too_few(lines.place(), count, found));
         }
         rest.push(lines)?;
     }
-    if !second.is_candidate {
+    if second.shape.is_none() {
         warn_of_more(lines, &mut rest.atoms)?;
         return rest.finish();
     }
@@ -234,7 +263,7 @@ fn first_table(
         if !lines.advance()? {
             return Err(text::too_few(lines.place(), count, found));
         }
-        if let Some(shape) = Shape::in_frame(lines.text()) {
+        if let Some(shape) = Shape::of_rows(lines, count - found - 1)? {
             lines.hold();
             return shape.table(lines.text(), lines.place(), options);
         }
@@ -258,8 +287,7 @@ fn warn_of_more(lines: &mut Lines<'_, '_>, atoms: &mut Atoms<'_>) -> Result<(), 
 fn read_points(lines: &mut Lines<'_, '_>, options: &ReadOptions) -> Result<(Scene, Report), Fault> {
     let (line, place) = (lines.text(), lines.place());
     let Some(shape) = Shape::of_point(line) else {
-        let what = "the first line must be the number of atoms, or a row of coordinates";
-        return Err(Fault::invalid(place, what, quote(line)));
+        return Err(Fault::invalid(place, FIRST, quote(line)));
     };
     let mut rows = Rows::new(shape.table(line, place, options)?, options);
     rows.push(lines)?;
@@ -278,7 +306,7 @@ struct Rows<'o> {
 
 impl<'o> Rows<'o> {
     fn new(table: Table, options: &'o ReadOptions) -> Self {
-        let (values, atoms) = (table.values(), Atoms::new(options, &table.columns()));
+        let (values, atoms) = (table.values(), Atoms::of_table(options, &table));
         Self { table, values, atoms }
     }
 
@@ -288,9 +316,7 @@ impl<'o> Rows<'o> {
     }
 
     fn finish(mut self) -> Result<(Scene, Report), Fault> {
-        if self.values.clamped {
-            self.atoms.warn("colors outside of their range were moved into it");
-        }
+        self.atoms.warn_of_colors(&self.values);
         self.atoms.finish()
     }
 }

@@ -1,5 +1,7 @@
 //! Tests of the reader.
 
+mod extended;
+
 use crate::{Error, Loaded, Problem, ReadOptions, Scalars, elements::Radii};
 use glam::DVec3;
 
@@ -125,6 +127,43 @@ mod plain {
     }
 
     #[test]
+    fn rows_that_start_with_a_whole_number_may_have_no_name() {
+        let rows = "0 0 0 1.5\n0.5 0 0 2.5\n0.25 3 4 3.5";
+        for comment in ["lattice sites x y z s\n", ""] {
+            let loaded = read(&format!("3\n{comment}{rows}"));
+            assert_eq!(xs(&loaded), [0.0, 0.5, 0.25], "{comment}");
+            assert_eq!(loaded.scene.position(2), DVec3::new(0.25, 3.0, 4.0));
+            assert_eq!(scalar(&loaded, "column_4"), [1.5, 2.5, 3.5]);
+        }
+        for x in ["-1", "+1", "1e0", "1.", ".5"] {
+            let text = format!("3\n\n0 1 0 7\n2 1 0 8\n{x} 1 0 9\n3\n\n0 1 2 3\n");
+            assert_eq!(xs(&read(&text))[..2], [0.0, 2.0], "{x}");
+        }
+        // The rows of another frame tell nothing of this one.
+        let typed = read("2\n\n500 1 0 0\n1 2 0 0\n2\n\n0.5 3 0 0\n1 2 0 0\n");
+        assert_eq!((xs(&typed), typed.report.skipped), (vec![1.0, 2.0], vec![]));
+    }
+
+    #[test]
+    fn names_that_are_whole_numbers_must_be_so_in_all_rows() {
+        let types = read("4\n\n500 1 0 0 7\n800 2 0 0 8\n1 3 0 0 9\nO 4 0 0 9\n");
+        assert_eq!((xs(&types), types.report.skipped), (vec![1.0, 2.0, 3.0, 4.0], vec![]));
+        // The row that contradicts is too far away to be looked at.
+        let rows = "1 2 3 4\n".repeat(20_000);
+        let late = read(&format!("20001\n\n{rows}0.5 2 3 4\n"));
+        assert_eq!(late.scene.records.len(), 20_000);
+        let [skipped] = &late.report.skipped[..] else { panic!("one problem") };
+        let found = (skipped.problem, skipped.count, skipped.first.to_string(), &*skipped.value);
+        assert_eq!(found, (Problem::Number, 1, "line 20003".to_owned(), "\"0.5\""));
+    }
+
+    #[test]
+    fn a_comment_of_numbers_does_not_tell_what_rows_are() {
+        let loaded = read("2\n1.5 2 3 4\n1 10 0 0\n2 20 0 0\n");
+        assert_eq!((xs(&loaded), loaded.report.skipped), (vec![10.0, 20.0], vec![]));
+    }
+
+    #[test]
     fn a_mark_of_utf_8_does_no_harm() {
         assert_eq!(xs(&read("\u{feff}1\n\nC 7 0 0\n")), [7.0]);
     }
@@ -153,7 +192,7 @@ mod frames {
 
     #[test]
     fn wrong_counts_are_told() {
-        for count in ["-3", "2.5", "99999999999999999999", "many"] {
+        for count in ["-3", "2.5", "99999999999999999999"] {
             let error =
                 format!("line 1: the number of atoms must be a whole number, not \"{count}\"");
             assert_eq!(fail(&format!("{count}\n\nC 0 0 0\n")), format!("a.xyz, {error}"));
@@ -266,70 +305,24 @@ mod points {
         let error = "a.xyz, line 1: the first line must be the number of atoms, or a row of \
                      coordinates, not \"3 atoms\"";
         assert_eq!(fail("3 atoms\n\nC 1 2 3\n"), error);
-        assert!(fail("x,y,z\n1,2,3\n").ends_with("must be a whole number, not \"x,y,z\""));
+        for line in ["x,y,z", "0.0,1.0,2.0", "many"] {
+            let error = fail(&format!("{line}\n1,2,3\n"));
+            assert_eq!(
+                error,
+                "a.xyz, line 1: the first line must be the number of atoms, or a \
+                 row of coordinates, not \"?\""
+                    .replace('?', line)
+            );
+        }
+        let later = load(&ReadOptions::default().frame(1), "1\n\nC 0 0 0\nmany\n").unwrap_err();
+        let text = "a.xyz, line 4: the number of atoms must be a whole number, not \"many\"";
+        assert_eq!(later.to_string(), text);
     }
 
     #[test]
     fn columns_without_end_are_refused() {
         let error = fail(&"1 ".repeat(5000));
         assert_eq!(error, "a.xyz, line 1: there must be at most 4096 columns, not 5000");
-    }
-}
-
-mod extended {
-    use super::*;
-
-    const TEXT: &str = "2\nLattice=\"9 0 0 0 9 0 0 0 9\" Properties=id:I:1:pos:R:3:species:S:1:\
-        velo:R:3:radius:R:1:color:R:3:fixed:L:1\n\
-        7 1 2 3 Fe .1 .2 .3 0.5 1 0.5 0 T\n8 4 5 6 Q .4 .5 .6 0.25 0 0.25 1 F\n";
-
-    #[test]
-    fn columns_are_what_the_comment_says() {
-        let loaded = read(TEXT);
-        assert_eq!(loaded.scene.attributes.elements, Some(vec![26, 0]));
-        assert_eq!(radii(&loaded), [0.5, 0.25]);
-        let colors = Some(vec![[255, 128, 0, 255], [0, 64, 255, 255]]);
-        assert_eq!(loaded.scene.attributes.colors, colors);
-        assert_eq!(scalar(&loaded, "velo_y"), [0.2, 0.5]);
-        assert_eq!(scalar(&loaded, "id"), [7.0, 8.0]);
-        assert_eq!(scalar(&loaded, "fixed"), [1.0, 0.0]);
-        assert_eq!(xs(&loaded), [1.0, 4.0]);
-    }
-
-    #[test]
-    fn atomic_numbers_are_elements() {
-        let loaded = read("2\nProperties=Z:I:1:pos:R:3\n8 0 0 0\n1 1 0 0\n");
-        assert_eq!(loaded.scene.attributes.elements, Some(vec![8, 1]));
-        assert_eq!(radii(&loaded), [1.52, 1.2]);
-    }
-
-    #[test]
-    fn colors_out_of_range_are_told() {
-        let text =
-            "2\nProperties=pos:R:3:radius:R:1:color:I:4\n0 0 0 1 300 0 -1 9\n1 0 0 1 1 2 3 4\n";
-        let loaded = read(text);
-        assert_eq!(loaded.scene.attributes.colors, Some(vec![[255, 0, 0, 9], [1, 2, 3, 4]]));
-        assert_eq!(loaded.report.warnings, ["colors outside of their range were moved into it"]);
-    }
-
-    #[test]
-    fn bad_values_are_counted() {
-        let text = TEXT.replace("0.25 0 0.25 1 F", "-1 0 0.25 1 F");
-        assert_eq!(read(&text).report.skipped[0].problem, Problem::Radius);
-        for (from, to) in [(" F\n", " maybe\n"), (" 1 F", " nan F"), (".4 ", ".4.4 ")] {
-            let loaded = read(&TEXT.replace(from, to));
-            assert_eq!(loaded.report.skipped[0].problem, Problem::Number, "{to}");
-        }
-        let loaded = read(&TEXT.replace(" F\n", "\n"));
-        assert_eq!(loaded.report.skipped[0].problem, Problem::Columns);
-    }
-
-    #[test]
-    fn a_wrong_header_is_an_error() {
-        let error = fail(&TEXT.replace("0 0 9\"", "0 0\""));
-        assert_eq!(error, "a.xyz, line 2: Lattice must have nine numbers, not 8");
-        let later = format!("{TEXT}1\nProperties=pos:Q:3\nC 0 0 0\n");
-        assert_eq!(xs(&read(&later)), [1.0, 4.0]);
     }
 }
 

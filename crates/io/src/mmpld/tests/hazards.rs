@@ -172,8 +172,28 @@ fn particles_that_cannot_be_used_are_counted() {
 
 #[test]
 fn particles_without_positions_are_left_out() {
-    let lists = [header(102, (0, 2), 7), points(102, &[1.0])];
-    let loaded = read(&file(102, &[frame(102, &lists)]));
-    assert_eq!(xs(&loaded), [1.0]);
-    assert_eq!(loaded.report.warnings, ["particles without positions were left out"]);
+    let first = points(102, &[0.0]);
+    let at = 84 + first.len() as u64;
+    let lists = [first, header(102, (0, 2), 7), header(102, (0, 2), 0), points(102, &[1.0])];
+    let bytes = file(102, &[frame(102, &lists)]);
+    let loaded = read(&bytes);
+    assert_eq!(xs(&loaded), [0.0, 1.0]);
+    assert_eq!(loaded.scene.attributes.ids, Some(vec![0, 8]));
+    let [skipped] = &loaded.report.skipped[..] else { panic!("one problem") };
+    let found = (skipped.problem, skipped.count, skipped.first, &*skipped.value);
+    assert_eq!(found, (Problem::Position, 7, crate::Place::Byte(at), "none"));
+    let error = read_with(&ReadOptions::default().strict(true), &bytes).unwrap_err();
+    let text = format!("a.mmpld, byte {at}: a position that cannot be stored: none");
+    assert_eq!(error.to_string(), text);
+}
+
+#[test]
+fn a_huge_number_of_particles_without_positions_takes_no_time() {
+    for count in [1 << 63, u64::MAX] {
+        let lists = [points(102, &[1.0]), header(102, (0, 2), count), header(102, (0, 2), count)];
+        let error = fault(&file(102, &[frame(102, &lists)]));
+        let rows = count.saturating_add(1);
+        let text = format!("a.mmpld: {rows} records are more than a scene can hold");
+        assert_eq!(error, text);
+    }
 }
