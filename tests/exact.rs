@@ -10,6 +10,7 @@
 
 use glam::{DVec3, Vec3};
 use naive::Verdict;
+use proptest::prelude::*;
 use puncta::{
     CpuRenderer, Depth, FrustumCull, Grid, GridConfig, Picture, Pipeline, Scene, Sphere, View,
 };
@@ -122,6 +123,61 @@ fn pictures_agree_with_the_reference() {
     assert!(share < 5e-4);
 }
 
+/// A camera at any distance from a sphere of any size, at any angle, in pictures of any shape.
+fn odd_view() -> impl Strategy<Value = View> {
+    let sizes = prop_oneof![Just((1, 1)), Just((40, 1)), Just((1, 40)), Just((24, 18))];
+    let place = [-2.0_f64..2.0, -2.0..2.0, -2.0..2.0].prop_map(DVec3::from);
+    let look = (place.clone(), place, -2.0_f64..2.254, any::<bool>());
+    (sizes, look, -7.0_f64..1.0).prop_filter_map(
+        "a degenerate view",
+        |((width, height), (eye, target, angle, is_perspective), near)| {
+            let view = View::look_at(eye, target, DVec3::Z).ok()?.with_size(width, height).ok()?;
+            let view = view.with_near(10_f64.powf(near)).ok()?;
+            if is_perspective {
+                view.with_perspective(10_f64.powf(angle).to_radians()).ok()
+            } else {
+                view.with_orthographic(10_f64.powf(angle - 1.0)).ok()
+            }
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1500))]
+
+    #[test]
+    fn odd_views_agree_with_the_reference(
+        view in odd_view(),
+        seed in any::<u64>(),
+        largest in -3.0_f32..5.0,
+        cells in 1_u32..9,
+    ) {
+        let mut random = Pcg64Mcg::seed_from_u64(seed);
+        let spheres = cloud(&mut random, 40, 2.0, [1e-4, 10_f32.powf(largest)]);
+        let mut scene = Scene::new(spheres);
+        let picture = render(&mut scene, &view, cells);
+        let verdict = naive::compare(&scene, &view, &picture);
+        prop_assert!(verdict.is_ok(), "{:?} {:?}", verdict, view);
+    }
+}
+
+#[test]
+fn a_sphere_that_nearly_touches_the_eye_is_drawn_whole() {
+    for (altitude, degrees) in [(1e-7, 0.1), (1e-8, 0.01), (1e-7, 10.0), (1e-6, 120.0)] {
+        for step in 0..20 {
+            let eye = DVec3::new(0.0, 0.0, 1.0 + altitude);
+            let view = View::look_at(eye, DVec3::ZERO, DVec3::Y).unwrap();
+            let view = view.with_size(60, 60).unwrap().with_near(altitude * 0.5).unwrap();
+            let view = view.with_perspective(f64::to_radians(degrees)).unwrap();
+            let aside = (2.0 * altitude).sqrt() as f32 * step as f32 / 12.0;
+            let mut scene = Scene::new(vec![Sphere::new([aside, 0.0, 0.0], 1.0)]);
+            let picture = render(&mut scene, &view, 1);
+            let verdict = naive::compare(&scene, &view, &picture);
+            assert!(verdict.is_ok(), "{altitude} {degrees} {step}: {verdict:?}");
+        }
+    }
+}
+
 #[test]
 fn threads_and_grids_do_not_change_a_byte() {
     for (name, scene, view) in scenes().into_iter().step_by(3) {
@@ -204,7 +260,7 @@ fn records_without_a_picture_do_no_harm() {
 
 #[test]
 fn a_renderer_survives_records_that_no_grid_takes() {
-    use puncta::{Brick, Renderer, Visible, core::Aabb, core::Batch};
+    use puncta::{Batch, Brick, Renderer, Visible, core::Aabb, core::VisibleBrick};
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0];
     let mut records = vec![Sphere::new([0.0; 3], 0.5)];
     for value in bad {
@@ -224,6 +280,12 @@ fn a_renderer_survives_records_that_no_grid_takes() {
         let mut renderer = CpuRenderer::default();
         Renderer::<Sphere>::begin(&mut renderer, &view).unwrap();
         renderer.draw(&Batch { scene: &scene, bricks: &bricks, visible: &visible.bricks }).unwrap();
+        let wrong = [VisibleBrick { index: 7, near: 0.0, far: 1.0 }];
+        let batch = Batch { scene: &scene, bricks: &bricks, visible: &wrong };
+        assert!(renderer.draw(&batch).is_err(), "a brick that is not there");
+        let inverted = [Brick { records: count..count + 1, ..brick.clone() }];
+        let batch = Batch { scene: &scene, bricks: &inverted, visible: &visible.bricks };
+        assert!(renderer.draw(&batch).is_err(), "records that are not there");
         let picture = Renderer::<Sphere>::finish(&mut renderer).unwrap();
         // Records 0 and, at depths -1 and at x = -1, those of the last round can be seen.
         assert!(picture.visible_records().iter().all(|&id| id == 0 || id >= 10));

@@ -185,11 +185,13 @@ fn odd_options_are_errors_too() {
         (["--colormap", "sunset", "--size", "9x9"], "viridis"),
         (["--color-by", "scalar:heat", "--size", "9x9"], "heat"),
         (["--color-by", "rgb", "--size", "9x9"], "colors"),
-        (["--grid", "100000", "--size", "9x9"], "cells"),
+        (["--size", "9000x7", "--supersample", "2"], "--supersample"),
     ] {
         let said = tool.fail(&[&["two.xyz"], &arguments[..]].concat());
         assert!(said.contains(named), "{arguments:?}: {said}");
     }
+    assert!(tool.fail(&["cube:n=100", "--grid", "1000"]).contains("cells"));
+    assert!(!tool.path("puncta.png").exists(), "a picture was written all the same");
 }
 
 #[test]

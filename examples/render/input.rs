@@ -4,7 +4,7 @@ use crate::{
     options::{ColorBy, Options, Radii},
     progress::Bar,
 };
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use puncta::{
     Format, Loaded, ReadOptions, Scene, Source, Sphere,
@@ -72,7 +72,9 @@ fn generate(spec: &str, options: &Options) -> Result<Input> {
     let total = generator.remaining().unwrap_or(0);
     let bar = Bar::counting("making", total);
     let mut scene = Scene::new(Vec::new());
-    scene.records.reserve_exact(usize::try_from(total)?);
+    let room = scene.records.try_reserve_exact(usize::try_from(total)?);
+    let bytes = total * size_of::<Sphere>() as u64;
+    room.with_context(|| format!("{spec}: no room for n={total} spheres, {bytes} bytes"))?;
     const CHUNK: usize = 1 << 16;
     loop {
         let made = generator.append(&mut scene, CHUNK)?;

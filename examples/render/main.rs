@@ -16,35 +16,37 @@ use anyhow::{Context, Result};
 use clap::Parser;
 use options::Options;
 use puncta::{
-    CpuRenderer, Depth, FrustumCull, Grid, GridConfig, Picture, Pipeline, Renderer, Resolution,
-    Scene, Sphere, View,
+    CpuRenderer, Depth, FrustumCull, Grid, GridConfig, Picture, Pipeline, Resolution, Scene,
+    Sphere, View,
 };
 use statistics::Statistics;
 use std::io::Write;
 
 fn main() {
     if let Err(error) = run(&Options::parse()) {
-        eprintln!("error: {error:#}");
+        // Nobody may be listening any more.
+        writeln!(std::io::stderr(), "error: {error:#}").ok();
         std::process::exit(1);
     }
 }
 
 fn run(options: &Options) -> Result<()> {
     if let Some(threads) = options.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
         pool.build_global().context("cannot start the threads")?;
     }
     let mut statistics = Statistics::default();
     let mut input = statistics.time("read", || input::read(options))?;
     for notice in &input.notices {
-        eprintln!("note: {notice}");
+        writeln!(std::io::stderr(), "note: {notice}").ok();
     }
-    let view = view::choose(options, &input)?;
+    let view = statistics.time("view", || view::choose(options, &input))?;
+    let look = output::Look::new(options, &input, &view)?;
     let grid = statistics.time("sort", || sort(options, &mut input.scene))?;
     let picture = draw(&input.scene, &grid, &view, "frame", &mut statistics)?;
     statistics.describe(&input, &grid, &view, &picture);
     output::write_numbers(options, &input.scene, &picture)?;
-    let image = output::image(options, (&input, &grid), &view, picture, &mut statistics)?;
+    let image = output::image(options, (&input, &grid), &look, picture, &mut statistics)?;
     statistics.time("write", || output::write_image(options, &image))?;
     statistics.finish(options)?;
     // Nobody may be listening any more; the files are written all the same.
@@ -72,16 +74,16 @@ fn draw(
     let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
     let budget = (scene.records.len() as u64 / 100).max(1 << 18);
     let picture = statistics.time(step, || {
-        let steps = pipeline.progressive(scene, grid, view, budget)?;
+        let mut steps = pipeline.progressive(scene, grid, view, budget)?;
         let bar = progress::Bar::counting("drawing", steps.step().left.records);
-        for step in steps {
+        for step in &mut steps {
             bar.set(step?.drawn.records);
         }
         bar.finish();
-        anyhow::Ok(pipeline.finish::<Sphere>()?)
+        anyhow::Ok(steps.finish()?)
     })?;
     if step == "frame" {
-        statistics.drawn = Renderer::<Sphere>::progress(pipeline.renderer());
+        statistics.drawn = pipeline.renderer().drawn();
     }
     Ok(picture)
 }

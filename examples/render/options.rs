@@ -29,24 +29,24 @@ pub(crate) struct Options {
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub(crate) up: Option<DVec3>,
 
-    /// The vertical angle of view
-    #[arg(long, value_name = "DEG", default_value_t = 45.0)]
-    pub(crate) fov: f64,
+    /// The vertical angle of view, 45 by default
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub(crate) fov: Option<f64>,
 
     /// Parallel rays, and the height of the picture in the units of the file
-    #[arg(long, value_name = "HEIGHT", conflicts_with = "fov")]
+    #[arg(long, value_name = "HEIGHT", conflicts_with = "fov", allow_negative_numbers = true)]
     pub(crate) ortho: Option<f64>,
 
     /// The view depth before which nothing is seen; a billionth of the distance by default
-    #[arg(long, value_name = "DEPTH")]
+    #[arg(long, value_name = "DEPTH", allow_negative_numbers = true)]
     pub(crate) near: Option<f64>,
 
     /// One radius for all particles, whatever the file says
-    #[arg(long, value_name = "R")]
+    #[arg(long, value_name = "R", allow_negative_numbers = true)]
     pub(crate) radius: Option<f64>,
 
     /// A factor for all radii
-    #[arg(long, value_name = "S", default_value_t = 1.0)]
+    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
     pub(crate) radius_scale: f64,
 
     /// Which radii to take for atoms
@@ -73,9 +73,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "COLOR", value_parser = background)]
     pub(crate) background: Option<Background>,
 
-    /// How many samples to average along each side of a pixel
-    #[arg(long, value_name = "K", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
-    pub(crate) supersample: u32,
+    /// How many samples to average along each side of a pixel; 2 by default, if that many fit
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub(crate) supersample: Option<u32>,
 
     /// Which frame of the file, counted from 0
     #[arg(long, value_name = "K", default_value_t = 0)]
@@ -89,9 +89,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N")]
     pub(crate) grid: Option<NonZero<u32>>,
 
-    /// Threads to draw with; all cores by default
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<NonZero<usize>>,
+    /// Threads to draw with, at most 1024; all cores by default
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
 
     /// The image to write
     #[arg(long, value_name = "FILE.png", default_value = "puncta.png")]

@@ -4,6 +4,7 @@ use crate::{
     draw,
     input::Input,
     options::{ColorBy, Options},
+    progress::Bar,
     statistics::Statistics,
 };
 use anyhow::{Context, Result};
@@ -30,35 +31,62 @@ pub(crate) fn write_numbers(
     Ok(())
 }
 
+/// How to make the image: everything that can be wrong with it is found before anything is drawn.
+#[derive(Debug)]
+pub(crate) struct Look {
+    map: ColorMap,
+    /// The view of the picture that the image is made of, with more pixels if they are to be averaged.
+    fine: View,
+    supersample: u32,
+}
+
+impl Look {
+    pub(crate) fn new(options: &Options, input: &Input, view: &View) -> Result<Self> {
+        let suited = input.outlook.map_or("viridis", |outlook| outlook.colormap);
+        let map = ColorMap::named(options.colormap.as_deref().unwrap_or(suited))?;
+        coloring(options, input, &map).check(&input.scene)?;
+        let fine = |factor: u32| {
+            let side = |side: u32| side.saturating_mul(factor);
+            view.clone().with_size(side(view.width()), side(view.height()))
+        };
+        let (fine, supersample) = match options.supersample {
+            Some(factor) => (fine(factor).context("lower --supersample or --size")?, factor),
+            None => fine(2).map_or_else(|_| (view.clone(), 1), |fine| (fine, 2)),
+        };
+        Ok(Self { map, fine, supersample })
+    }
+}
+
 /// Makes the image, of a finer picture if pixels are to be averaged.
 pub(crate) fn image(
     options: &Options,
     (input, grid): (&Input, &Grid),
-    view: &View,
+    look: &Look,
     picture: Picture,
     statistics: &mut Statistics,
 ) -> Result<Image> {
-    let suited = input.outlook.map_or("viridis", |outlook| outlook.colormap);
-    let map = ColorMap::named(options.colormap.as_deref().unwrap_or(suited))?;
-    let coloring = coloring(options, input, &map);
-    let range = coloring.range(&input.scene)?;
-    let factor = options.supersample;
-    let picture = if factor > 1 {
+    let coloring = coloring(options, input, &look.map);
+    let (view, supersample) = (&look.fine, look.supersample);
+    let picture = if supersample > 1 {
         drop(picture);
-        let side = |side: u32| side.saturating_mul(factor);
-        let fine = view.clone().with_size(side(view.width()), side(view.height()));
-        let fine = fine.context("too many samples: lower --supersample or --size")?;
-        draw(&input.scene, grid, &fine, "supersample", statistics)?
+        draw(&input.scene, grid, view, "supersample", statistics)?
     } else {
         picture
     };
+    let spinner = Bar::spinner("shading");
     let background = options.background.unwrap_or_default();
-    let shading = Shading { coloring, background, supersample: factor, ..Shading::default() };
-    let mut image = statistics.time("shade", || shade(&input.scene, view, &picture, &shading))?;
-    if let (true, Some(range)) = (options.legend, range) {
-        draw_legend(&mut image, &map, range, &title(coloring));
-    }
-    Ok(image)
+    let shading = Shading { coloring, background, supersample, ..Shading::default() };
+    let image = statistics.time("shade", || -> Result<Image> {
+        let size = (view.width() / supersample, view.height() / supersample);
+        let coarse = view.clone().with_size(size.0, size.1)?;
+        let mut image = shade(&input.scene, &coarse, &picture, &shading)?;
+        if let (true, Some(range)) = (options.legend, coloring.range(&input.scene)?) {
+            draw_legend(&mut image, &look.map, range, &title(coloring));
+        }
+        Ok(image)
+    });
+    spinner.finish();
+    image
 }
 
 pub(crate) fn write_image(options: &Options, image: &Image) -> Result<()> {

@@ -13,28 +13,29 @@ const STRAYS: f64 = 0.001;
 const STRAY_FACTOR: f64 = 3.0;
 
 pub(crate) fn choose(options: &Options, input: &Input) -> Result<View> {
-    if let (Some(outlook), None, None) = (&input.outlook, options.eye, options.target) {
-        let view = View::look_at(outlook.eye, outlook.target, input.up)?;
-        let view = view.with_size(options.size.0, options.size.1)?;
-        return Ok(view.with_perspective(outlook.fov.to_radians())?);
-    }
     let bounds = bounds(input);
-    let target = options.target.unwrap_or_else(|| bounds.center());
-    let up = options.up.unwrap_or_else(|| usual_up(input.up, options.eye.map(|eye| target - eye)));
+    // An outlook suits as a whole: whoever chooses an eye or a target of their own goes without it.
+    let is_free = options.eye.is_none() && options.target.is_none();
+    let outlook = input.outlook.filter(|_| is_free);
+    let chosen_eye = options.eye.or(outlook.map(|outlook| outlook.eye));
+    let chosen_target = options.target.or(outlook.map(|outlook| outlook.target));
+    let fov = options.fov.or(outlook.map(|outlook| outlook.fov)).unwrap_or(45.0);
+    let target = chosen_target.unwrap_or_else(|| bounds.center());
+    let up = options.up.unwrap_or_else(|| usual_up(input.up, chosen_eye.map(|eye| target - eye)));
     let aside = aside(up, &bounds);
-    let eye = options.eye.unwrap_or_else(|| target + aside * bounds.extent().length());
+    let eye = chosen_eye.unwrap_or_else(|| target + aside * bounds.extent().length());
     let with_options = |view: View| -> Result<View> {
         let view = view.with_size(options.size.0, options.size.1)?;
         Ok(match options.ortho {
             Some(height) => view.with_orthographic(height)?,
-            None => view.with_perspective(options.fov.to_radians())?,
+            None => view.with_perspective(fov.to_radians())?,
         })
     };
     let mut view = with_options(View::look_at(eye, target, up)?)?;
-    if options.eye.is_none() {
+    if chosen_eye.is_none() {
         let fitted = frame(view, input, &bounds);
         // A target of one's own stays in the middle; only the distance is fitted.
-        view = match options.target {
+        view = match chosen_target {
             Some(target) => {
                 let distance = (fitted.eye() - bounds.center()).length();
                 with_options(View::look_at(target + aside * distance, target, up)?)?

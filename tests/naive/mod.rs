@@ -28,6 +28,7 @@ struct Pixel {
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     id: u32,
+    radius: f64,
     depth: f64,
     /// Whether the ray's hit, and its being beyond the near plane, do not hang on a hair.
     is_sure: bool,
@@ -73,10 +74,14 @@ fn check(pixel: &Pixel, id: u32, depth: f32) -> Result<(), String> {
         let is_far = depth == f32::INFINITY;
         return if is_far { Ok(()) } else { Err(format!("shows nothing at {depth}")) };
     }
-    // The depth at a silhouette changes without bound; elsewhere it must be right.
-    let sure = pixel.nearest.into_iter().chain(other.copied()).find(|c| c.id == id && c.is_sure);
-    match sure {
-        Some(c) if (f64::from(depth) - c.depth).abs() > DEPTH_ERROR * c.depth => {
+    // The depth at a silhouette changes without bound, within the sphere; elsewhere it must be right.
+    let shown = pixel.nearest.into_iter().chain(other.copied()).find(|c| c.id == id);
+    let error = |c: Candidate| (f64::from(depth) - c.depth).abs();
+    let is_right = |c: Candidate| {
+        error(c) <= DEPTH_ERROR * c.depth + if c.is_sure { 0.0 } else { 2.0 * c.radius }
+    };
+    match shown {
+        Some(c) if !is_right(c) => {
             Err(format!("record {id} has depth {depth} instead of {}", c.depth))
         }
         _ => Ok(()),
@@ -93,6 +98,7 @@ fn reference<R: Record>(scene: &Scene<R>, view: &View, column: u32, row: u32) ->
         candidates.extend(
             candidate(view, (column, row), center, radius).map(|(depth, is_sure)| Candidate {
                 id: index as u32,
+                radius,
                 depth,
                 is_sure,
             }),

@@ -202,7 +202,7 @@ mod tests {
                 let at = DVec3::new(0.0, 0.1 * radius, -0.77 * radius);
                 let center = camera.place(at);
                 let disc = Disc::new(&camera, center, radius).expect("it is small and far");
-                assert!(check(&camera, &disc, center, radius) > 10);
+                assert!(check(100, &camera, &disc, (center, radius)) > 10);
             }
         }
     }
@@ -221,7 +221,7 @@ mod tests {
             let at = 0.2 * radius * DVec3::new(0.0, turn.cos() - 0.3, turn.sin());
             let center = camera.place(at);
             let disc = Disc::new(&camera, center, radius).expect("it is small and far enough");
-            assert!(check(&camera, &disc, center, radius) > 1000);
+            assert!(check(100, &camera, &disc, (center, radius)) > 1000);
         }
     }
 
@@ -232,28 +232,28 @@ mod tests {
             let mut covered = 0;
             for place in 0..40 {
                 let view = View::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y).unwrap();
-                let view = view.with_size(100, 100).unwrap().with_perspective(fov_y).unwrap();
+                let view = view.with_size(300, 300).unwrap().with_perspective(fov_y).unwrap();
                 let camera = Camera::new(&view, DVec3::ZERO);
-                let at = camera.ray(10.0 + 0.37 * f64::from(place), 90.0 - 1.9 * f64::from(place));
+                let at = camera.ray(20.0 + 1.37 * f64::from(place), 280.0 - 5.9 * f64::from(place));
                 let center = at.extend(1.0) * 3.0;
                 let radius = center.z * camera.pixel() * 8.0;
                 if let Some(disc) = Disc::new(&camera, center, radius) {
-                    covered += check(&camera, &disc, center, radius);
+                    covered += check(300, &camera, &disc, (center, radius));
                 }
                 let radius = center.z / (DEPTH_RADII_MIN + 0.1);
                 let disc = Disc::new(&camera, center, radius).expect("it is small and far enough");
-                covered += check(&camera, &disc, center, radius);
+                covered += check(300, &camera, &disc, (center, radius));
             }
             assert!(covered > 100, "{covered} pixels tell little");
         }
     }
 
     /// Compares a disc with `f64`; returns how many of its pixels `f32` settled.
-    fn check(camera: &Camera, disc: &Disc, center: DVec3, radius: f64) -> usize {
+    fn check(size: u32, camera: &Camera, disc: &Disc, (center, radius): (DVec3, f64)) -> usize {
         let mut covered = 0;
-        for row in 0..100 {
+        for row in 0..size {
             let row_of_disc = disc.row(camera, f64::from(row));
-            for column in (0..96).step_by(LANES) {
+            for column in (0..size - 7).step_by(LANES) {
                 let (mut depth, mut id) = ([f32::INFINITY; LANES], [9; LANES]);
                 let mut target = Target { depth: &mut depth, id: &mut id, new_id: 3 };
                 let left = disc.draw(camera, row_of_disc, f64::from(column), &mut target);

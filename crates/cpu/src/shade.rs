@@ -139,6 +139,21 @@ pub fn shade<R: Record>(
 }
 
 impl Coloring<'_> {
+    /// Checks that a scene has what this coloring needs, without looking at any value.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoColumn`] when it has not.
+    pub fn check<R: Record>(&self, scene: &Scene<R>) -> Result<(), Error> {
+        let missing = match *self {
+            Self::Colors if scene.attributes.colors.is_none() => "colors",
+            Self::Elements(_) if scene.attributes.elements.is_none() => "elements",
+            Self::Scalar { name, .. } => return scalar(scene, name).map(|_| ()),
+            _ => return Ok(()),
+        };
+        Err(Error::NoColumn { what: missing.to_owned() })
+    }
+
     /// The values that the ends of the color map stand for; `None` if there is no color map.
     ///
     /// Unless it is given, the range leaves out the outermost 0.2 % of the records on either side:

@@ -47,8 +47,9 @@ impl Plane {
         let reach = self.normal.abs().dot(half) + f64::from(brick.radius_max);
         let largest = to_origin.length() + center.length() + self.distance.abs() + reach;
         let slack = 16.0 * f64::EPSILON * largest;
-        // Written so that a box beyond all numbers, which makes NaN, is kept.
-        !(self.normal.dot(center) + self.distance + reach < -slack)
+        let inside = self.normal.dot(center) + self.distance + reach + slack;
+        // A box beyond all numbers, which makes NaN, is kept.
+        inside >= 0.0 || inside.is_nan()
     }
 }
 
