@@ -161,20 +161,26 @@ proptest! {
     }
 }
 
+/// Just beside the eye: one tangent is nearly along the line of sight, the other nearly across it.
 #[test]
 fn a_sphere_that_nearly_touches_the_eye_is_drawn_whole() {
-    for (altitude, degrees) in [(1e-7, 0.1), (1e-8, 0.01), (1e-7, 10.0), (1e-6, 120.0)] {
-        for step in 0..20 {
+    for (altitude, degrees) in [(1e-9, 0.01), (1e-10, 0.1), (1e-10, 0.01), (1e-7, 20.0)] {
+        let mut covered = 0;
+        for step in 0..60 {
             let eye = DVec3::new(0.0, 0.0, 1.0 + altitude);
             let view = View::look_at(eye, DVec3::ZERO, DVec3::Y).unwrap();
-            let view = view.with_size(60, 60).unwrap().with_near(altitude * 0.5).unwrap();
-            let view = view.with_perspective(f64::to_radians(degrees)).unwrap();
-            let aside = (2.0 * altitude).sqrt() as f32 * step as f32 / 12.0;
+            // Three rows of many columns: `degrees` is about the horizontal angle.
+            let view = view.with_size(300, 3).unwrap().with_near(altitude * 0.5).unwrap();
+            let view = view.with_perspective(f64::to_radians(degrees / 100.0)).unwrap();
+            let reach = f64::to_radians(degrees * 0.5).tan() as f32;
+            let aside = 1.0 + reach * (step as f32 / 30.0 - 1.0);
             let mut scene = Scene::new(vec![Sphere::new([aside, 0.0, 0.0], 1.0)]);
             let picture = render(&mut scene, &view, 1);
             let verdict = naive::compare(&scene, &view, &picture);
             assert!(verdict.is_ok(), "{altitude} {degrees} {step}: {verdict:?}");
+            covered += picture.covered_pixels();
         }
+        assert!(covered > 1000, "{covered} pixels tell little");
     }
 }
 
