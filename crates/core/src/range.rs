@@ -19,15 +19,18 @@ const BINS: usize = 4096;
 /// ```
 pub fn inner_range<I: Iterator<Item = f64>>(values: impl Fn() -> I, outside: f64) -> [f64; 2] {
     let finite = || values().filter(|value| value.is_finite());
-    let low = finite().fold(f64::INFINITY, f64::min);
-    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in finite() {
+        low = if value < low { value } else { low };
+        high = if value > high { value } else { high };
+    }
     let width = (high - low) / BINS as f64;
     if !width.is_normal() || width < 0.0 {
         return if low <= high { [low, high] } else { [0.0, 1.0] };
     }
-    let mut bins = [0_u64; BINS];
+    let (mut bins, scale) = ([0_u64; BINS], 1.0 / width);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
-    finite().for_each(|value| bins[(((value - low) / width) as usize).min(BINS - 1)] += 1);
+    finite().for_each(|value| bins[(((value - low) * scale) as usize).min(BINS - 1)] += 1);
     let allowed = bins.iter().sum::<u64>() as f64 * outside;
     let first = passed(bins.iter(), allowed);
     let last = passed(bins.iter().rev(), allowed);
