@@ -34,6 +34,7 @@ a sphere open, one looks through the cut at what lies behind.
 mod bounds;
 mod brick;
 mod error;
+mod frame;
 mod image;
 mod picture;
 mod pipeline;
