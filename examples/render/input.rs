@@ -7,7 +7,7 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use puncta::{
-    Format, Loaded, ReadOptions, Scene, Source, Sphere,
+    Bounds, Format, Loaded, ReadOptions, Scene, Source, Sphere,
     io::{Scalars, elements, synthetic::Generator},
 };
 use std::{path::Path, sync::Arc};
@@ -21,6 +21,8 @@ pub(crate) struct Input {
     pub(crate) name: String,
     pub(crate) format: String,
     pub(crate) scene: Scene<Sphere>,
+    /// The box around all records.
+    pub(crate) bounds: Bounds,
     pub(crate) skipped: u64,
     pub(crate) notices: Vec<String>,
     /// The direction that is up.
@@ -87,7 +89,18 @@ fn generate(spec: &str, options: &Options) -> Result<Input> {
     set_radii(&mut scene, options)?;
     let scalar = scene.attributes.scalars.first().map(|scalar| scalar.name.clone());
     let format = "generator".to_owned();
-    Ok(Input { name, format, scene, skipped: 0, notices: vec![], up, scalar, outlook: None })
+    let bounds = scene.bounds();
+    Ok(Input {
+        name,
+        format,
+        scene,
+        bounds,
+        skipped: 0,
+        notices: vec![],
+        up,
+        scalar,
+        outlook: None,
+    })
 }
 
 /// Gives the records of a generator the radii that were asked for.
@@ -148,6 +161,7 @@ fn read_file(name: &str, options: &Options) -> Result<Input> {
         up: if format == Format::Las { DVec3::Z } else { DVec3::Y },
         scalar: None,
         outlook: None,
+        bounds: scene.bounds(),
         scene,
     })
 }

@@ -2,7 +2,11 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::{
-    sync::atomic::{AtomicBool, Ordering},
+    sync::{
+        atomic::{AtomicBool, Ordering},
+        mpsc::{self, RecvTimeoutError, Sender},
+    },
+    thread,
     time::{Duration, Instant},
 };
 
@@ -15,6 +19,8 @@ pub(crate) struct Bar {
     bar: ProgressBar,
     start: Instant,
     is_shown: AtomicBool,
+    /// Lives as long as work that cannot tell how far it is.
+    _working: Option<Sender<()>>,
 }
 
 impl Bar {
@@ -30,10 +36,17 @@ impl Bar {
 
     /// A sign of life for work that cannot tell how far it is.
     pub(crate) fn spinner(what: &'static str) -> Self {
+        let (working, done) = mpsc::channel::<()>();
         let bar = Self::new(what, "{msg:>8} {spinner} {elapsed}", 0);
-        bar.bar.set_draw_target(ProgressDrawTarget::stderr());
-        bar.bar.enable_steady_tick(PATIENCE);
-        bar
+        let shown = bar.bar.clone();
+        // Nothing is ever sent: the other end goes when the work is done.
+        thread::spawn(move || {
+            if done.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                shown.set_draw_target(ProgressDrawTarget::stderr());
+                shown.enable_steady_tick(PATIENCE / 4);
+            }
+        });
+        Self { _working: Some(working), ..bar }
     }
 
     fn new(what: &'static str, template: &str, total: u64) -> Self {
@@ -42,7 +55,7 @@ impl Bar {
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
         bar.set_style(style.progress_chars("=> "));
         bar.set_message(what);
-        Self { bar, start: Instant::now(), is_shown: AtomicBool::new(false) }
+        Self { bar, start: Instant::now(), is_shown: AtomicBool::new(false), _working: None }
     }
 
     pub(crate) fn set(&self, position: u64) {

@@ -26,7 +26,7 @@ impl Statistics {
 
     /// Notes what is known once the first picture is drawn.
     pub(crate) fn describe(&mut self, input: &Input, grid: &Grid, view: &View, picture: &Picture) {
-        let bounds = input.scene.bounds();
+        let bounds = input.bounds;
         let values = json!({
             "input": input.name,
             "format": input.format,
