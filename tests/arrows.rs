@@ -19,7 +19,7 @@ const ARROWS: [(&str, &[&str]); 6] = [
 ];
 
 /// Crates that only some of ours may name.
-const RESERVED: [(&str, &[&str]); 2] = [("rayon", &["puncta-cpu"]), ("wgpu", &[])];
+const RESERVED: [(&str, &[&str]); 2] = [("rayon", &["puncta-cpu", "puncta-grid"]), ("wgpu", &[])];
 
 fn metadata() -> Metadata {
     MetadataCommand::new().no_deps().exec().unwrap()

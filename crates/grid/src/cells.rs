@@ -2,84 +2,106 @@
 The cells of a uniform grid, and the one that holds a position.
 
 A position must lie inside the box of its cell, in floating point, or culling by boxes would be
-wrong. The usual index, `floor((p - min) / width)`, does not promise that: its rounding and that of
-the box differ. So the faces between cells are numbers of their own, one ascending list for each
-axis, and a cell is *defined* as the half-open box between neighboring faces. The quotient is a
-guess, corrected by comparing with the faces; the last face lies just above the largest coordinate.
-Every position within the data's box has exactly one cell, by construction.
+wrong. Here this holds by construction. The index of a cell along an axis is
+
+```text
+cell(x) = trunc(clamp((x - corner) * scale, 0, cells - 1))
+```
+
+in `f32`. Subtracting a constant, multiplying by a positive one, clamping and truncating all keep the
+order of numbers, rounded or not: the index never falls as `x` grows. So the positions with index `i`
+are exactly the numbers from the first with index `i` to the one before the first with index `i + 1`.
+Those first numbers are the faces between cells; they are found by bisection when somebody asks for
+them. No record is ever compared with a face, and no face is stored.
+
+The clamp makes the outermost cells reach as far as the data do, which is what a robust
+[`Fit`](crate::Fit) builds on.
 */
 
-use crate::Error;
+use crate::{Error, Resolution};
 use glam::{DVec3, Vec3};
 use puncta_core::Aabb;
+use wide::f32x4;
 
-/// The largest number of cells: sorting needs a gigabyte for them.
-pub(crate) const CELLS_MAX: u64 = 1 << 27;
+/// The largest number of cells. A cell costs nothing while it is empty, but its code must fit.
+pub(crate) const CELLS_MAX: u64 = 1 << 28;
 
-/// How fine a grid is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Resolution {
-    /// The number of cells along the longest side of the data.
-    LongestSide(u32),
-    /// About this many records in a brick, if they were spread evenly over the box of the data; more
-    /// if that would be more cells than a grid can have.
-    RecordsPerBrick(u32),
-}
+/// The largest number of cells along an axis: from here on `f32` cannot tell them apart well.
+pub(crate) const AXIS_MAX: u64 = 1 << 20;
 
-impl Default for Resolution {
-    fn default() -> Self {
-        Self::RecordsPerBrick(512)
-    }
-}
-
-/// Equal cubes that fill a box; the last ones may reach beyond it.
+/// Equal cubes that fill a box; the outermost ones reach to the ends of the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cells {
     dims: [u32; 3],
-    /// The faces between cells along each axis: one more than there are cells.
-    faces: [Vec<f32>; 3],
-    min: DVec3,
+    /// The smallest box around the data.
+    bounds: Aabb,
+    /// Where the cells start.
+    corner: Vec3,
     /// Cells per unit of length.
-    scale: f64,
+    scale: f32,
+}
+
+/// Where the cells of a grid lie, apart from its resolution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Layout {
+    /// The box that the cells fill.
+    pub(crate) inner: Aabb,
+    /// For each axis, whether a layer of cells for what lies below the box is needed, and above.
+    pub(crate) overflow: [[bool; 2]; 3],
 }
 
 impl Cells {
-    /// The cells over the box of `records` positions.
-    pub(crate) fn new(bounds: Aabb, records: usize, resolution: Resolution) -> Result<Self, Error> {
-        if records == 0 {
-            return Ok(Self {
-                dims: [0; 3],
-                faces: [vec![], vec![], vec![]],
-                min: DVec3::ZERO,
-                scale: 0.0,
-            });
-        }
-        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        let sides = max - min;
-        let longest = match resolution {
-            Resolution::LongestSide(cells) => f64::from(cells),
+    /// The cells of no records.
+    pub(crate) const EMPTY: Self =
+        Self { dims: [0; 3], bounds: Aabb::EMPTY, corner: Vec3::ZERO, scale: 0.0 };
+
+    /// The cells over a box for this many records.
+    pub(crate) fn new(
+        layout: &Layout,
+        records: usize,
+        resolution: Resolution,
+    ) -> Result<Self, Error> {
+        let Aabb { min, max } = layout.inner;
+        let sides = max.as_dvec3() - min.as_dvec3();
+        let longest = sides.max_element();
+        let width = match resolution {
+            Resolution::LongestSide(0) => return Err(Error::Resolution { dims: [0; 3] }),
+            Resolution::LongestSide(cells) => longest / f64::from(cells),
             Resolution::RecordsPerBrick(target) => {
                 // Less than there may be, as whole numbers of cells are a little more than wished.
                 let bricks = records as f64 / f64::from(target.max(1));
-                cells_along_longest(sides, bricks.min(CELLS_MAX as f64 * 0.6))
+                let most = AXIS_MAX as f64 * 0.5;
+                longest / cells_along_longest(sides, bricks.min(CELLS_MAX as f64 * 0.6)).min(most)
             }
+            Resolution::Width(width) if width.is_normal() && width > 0.0 => f64::from(width),
+            Resolution::Width(width) => return Err(Error::Width { width }),
         };
-        // A point has no extent and one cell; its width is as good as any other.
-        let width = sides.max_element() / longest;
+        // Cells that are thinner than the spacing of the numbers themselves would hold nothing. A
+        // point has no extent and one cell; its width is as good as any other.
+        let width = width.max(spacing(&layout.inner));
         let width = if width > 0.0 { width } else { 1.0 };
-        // Cells that are thinner than the spacing of the numbers themselves would hold nothing.
-        let width = width.max(spacing(&bounds));
-        let count = |side: f64| (side / width).ceil().clamp(1.0, longest.max(1.0));
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 2^32")]
-        let dims = sides.to_array().map(|side| count(side) as u64);
-        let total = dims.iter().try_fold(1_u64, |product, &dim| product.checked_mul(dim));
-        if longest < 1.0 || total.is_none_or(|total| total > CELLS_MAX) {
-            let dims = if longest < 1.0 { [0; 3] } else { dims };
+        // What rounding adds to a whole number is no cell of its own.
+        let cells = |side: f64| (side / width * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
+        let inner = sides.to_array().map(|side| cells(side) as u64);
+        let [x, y, z] = std::array::from_fn(|axis| {
+            inner[axis] + layout.overflow[axis].iter().map(|&layer| u64::from(layer)).sum::<u64>()
+        });
+        let total = x.checked_mul(y).and_then(|xy| xy.checked_mul(z));
+        let dims = [x, y, z];
+        if total.is_none_or(|total| total > CELLS_MAX) || dims.iter().any(|&dim| dim > AXIS_MAX) {
             return Err(Error::Resolution { dims });
         }
+        #[expect(clippy::cast_possible_truncation, reason = "rounding is as good")]
+        let (scale, layer) = ((1.0 / width).min(f64::from(f32::MAX)) as f32, width as f32);
+        let below = Vec3::from_array(layout.overflow.map(|[below, _]| f32::from(u8::from(below))));
         let dims = dims.map(|dim| u32::try_from(dim).unwrap_or(u32::MAX));
-        let axis = |axis: usize| faces(bounds.min[axis], bounds.max[axis], width, dims[axis]);
-        Ok(Self { dims, faces: [axis(0), axis(1), axis(2)], min, scale: 1.0 / width })
+        Ok(Self { dims, bounds: layout.inner, corner: min - below * layer, scale })
+    }
+
+    /// The same cells; their outermost faces are those of this box around the data.
+    pub(crate) fn around(self, bounds: Aabb) -> Self {
+        Self { bounds, ..self }
     }
 
     /// The number of cells along each axis.
@@ -88,60 +110,98 @@ impl Cells {
         self.dims
     }
 
-    /// The number of cells.
+    /// The number of cells, most of which may be empty.
     #[must_use]
     pub fn count(&self) -> usize {
         self.dims.iter().map(|&dim| dim as usize).product()
     }
 
+    /// The side of a cell that is not an outermost one.
+    #[must_use]
+    pub fn width(&self) -> f32 {
+        1.0 / self.scale
+    }
+
     /// The box of a cell; positions on its upper faces belong to the next cell.
+    ///
+    /// Outermost cells reach to the ends of the data.
     ///
     /// # Panics
     ///
     /// When there is no such cell.
     #[must_use]
     pub fn bounds(&self, place: [u32; 3]) -> Aabb {
-        let face = |axis: usize, up: usize| self.faces[axis][place[axis] as usize + up];
-        Aabb {
-            min: Vec3::new(face(0, 0), face(1, 0), face(2, 0)),
-            max: Vec3::new(face(0, 1), face(1, 1), face(2, 1)),
-        }
+        assert!(self.contains(place), "there is no cell {place:?} among {:?}", self.dims);
+        let face = |up: u32| std::array::from_fn(|axis| self.face(axis, place[axis] + up));
+        Aabb { min: Vec3::from_array(face(0)), max: Vec3::from_array(face(1)) }
     }
 
-    /// The flat index of the cell that holds a position of the data.
-    #[inline]
-    pub(crate) fn index(&self, position: Vec3) -> usize {
-        let [x, y, z] = position.to_array();
-        let (dim_x, dim_y) = (self.dims[0] as usize, self.dims[1] as usize);
-        (self.along(2, z) * dim_y + self.along(1, y)) * dim_x + self.along(0, x)
+    /// The cell that holds a position; one outside the box of the data is held by an outermost cell.
+    ///
+    /// # Panics
+    ///
+    /// When there are no cells.
+    #[must_use]
+    pub fn place(&self, position: Vec3) -> [u32; 3] {
+        assert!(self.dims[0] > 0, "there are no cells");
+        std::array::from_fn(|axis| self.along(axis, position[axis]))
     }
 
-    /// The flat index of a place.
-    pub(crate) fn flat(&self, [x, y, z]: [u32; 3]) -> u32 {
-        (z * self.dims[1] + y) * self.dims[0] + x
+    /// Whether there is such a cell.
+    #[must_use]
+    pub fn contains(&self, place: [u32; 3]) -> bool {
+        place.iter().zip(self.dims).all(|(&at, dim)| at < dim)
     }
 
-    /// The place with this flat index.
-    pub(crate) fn place(&self, flat: u32) -> [u32; 3] {
-        let row = flat / self.dims[0];
-        [flat % self.dims[0], row % self.dims[1], row / self.dims[1]]
+    /// The corner, the scale and the largest index along each axis, as the sort needs them.
+    pub(crate) fn lattice(&self) -> (Vec3, f32, Vec3) {
+        let last = self.dims.map(|dim| dim.saturating_sub(1) as f32);
+        (self.corner, self.scale, Vec3::from_array(last))
     }
 
-    /// The cell along an axis that holds a coordinate of the data.
-    #[inline]
-    fn along(&self, axis: usize, coordinate: f32) -> usize {
-        let faces = &self.faces[axis];
-        let guess = (f64::from(coordinate) - self.min[axis]) * self.scale;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
-        let mut cell = (guess as usize).min(faces.len() - 2);
-        while cell > 0 && coordinate < faces[cell] {
-            cell -= 1;
-        }
-        while cell + 2 < faces.len() && coordinate >= faces[cell + 1] {
-            cell += 1;
-        }
+    /// The sides of a cell, as lanes; those of an only cell along an axis are those of the data.
+    pub(crate) fn sides(&self) -> f32x4 {
+        let extent = self.bounds.max - self.bounds.min;
+        let side = |axis: usize| if self.dims[axis] == 1 { extent[axis] } else { self.width() };
+        f32x4::new([side(0), side(1), side(2), 0.0])
+    }
+
+    /// The cell along an axis that holds a coordinate.
+    fn along(&self, axis: usize, x: f32) -> u32 {
+        let last = (self.dims[axis] - 1) as f32;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is meant")]
+        let cell = ((x - self.corner[axis]) * self.scale).max(0.0).min(last) as u32;
         cell
     }
+
+    /// The smallest number of the data's range whose cell along an axis is at least `cell`; the one
+    /// above the range if there is none.
+    fn face(&self, axis: usize, cell: u32) -> f32 {
+        let (min, max) = (self.bounds.min[axis], self.bounds.max[axis]);
+        let (mut low, mut high) = (rank(min), rank(max) + 1);
+        while low < high {
+            // No overflow: ranks are 33-bit numbers.
+            let middle = (low + high).div_euclid(2);
+            if cell < self.dims[axis] && self.along(axis, number(middle)) >= cell {
+                high = middle;
+            } else {
+                low = middle + 1;
+            }
+        }
+        number(high)
+    }
+}
+
+/// The place of a number among all `f32`, ascending.
+fn rank(x: f32) -> i64 {
+    let magnitude = i64::from(x.to_bits() & 0x7fff_ffff);
+    if x.is_sign_negative() { -magnitude } else { magnitude }
+}
+
+/// The number of this rank.
+fn number(rank: i64) -> f32 {
+    let magnitude = f32::from_bits(u32::try_from(rank.unsigned_abs()).unwrap_or(u32::MAX));
+    if rank < 0 { -magnitude } else { magnitude }
 }
 
 /// The largest distance between neighboring `f32` along the sides that have an extent.
@@ -152,14 +212,6 @@ fn spacing(bounds: &Aabb) -> f64 {
         if has_extent { f64::from(largest) - f64::from(largest.next_down()) } else { 0.0 }
     };
     (0..3).map(along).fold(0.0, f64::max)
-}
-
-/// The ascending faces of `count` cells from `min` to just above `max`.
-fn faces(min: f32, max: f32, width: f64, count: u32) -> Vec<f32> {
-    #[expect(clippy::cast_possible_truncation, reason = "rounding keeps the order")]
-    let face = |i: u32| (f64::from(min) + f64::from(i) * width) as f32;
-    let inner = (0..count).map(|i| face(i).clamp(min, max));
-    inner.chain([face(count).max(max.next_up())]).collect()
 }
 
 /// How many cells the longest side must have for about `bricks` cubes in a box of these sides.
@@ -180,54 +232,4 @@ fn cells_along_longest(sides: DVec3, bricks: f64) -> f64 {
         a / bricks
     };
     if width > 0.0 { (a / width).round().max(1.0) } else { 1.0 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn flat_and_thin_boxes_get_the_wanted_number_of_bricks() {
-        assert_eq!(cells_along_longest(DVec3::new(2.0, 2.0, 2.0), 1000.0), 10.0);
-        assert_eq!(cells_along_longest(DVec3::new(0.0, 2.0, 2.0), 100.0), 10.0);
-        assert_eq!(cells_along_longest(DVec3::new(0.0, 0.0, 7.0), 100.0), 100.0);
-        assert_eq!(cells_along_longest(DVec3::ZERO, 100.0), 1.0);
-        assert_eq!(cells_along_longest(DVec3::new(1.0, 1.0, 1e-9), 100.0), 10.0);
-    }
-
-    #[test]
-    fn cells_are_no_thinner_than_the_numbers_allow() {
-        let bounds = Aabb { min: Vec3::X, max: Vec3::X.with_x(1.0_f32.next_up()) };
-        let cells = Cells::new(bounds, 3_000_000, Resolution::default()).unwrap();
-        assert!(cells.dims()[0] <= 2, "{:?}", cells.dims());
-    }
-
-    #[test]
-    fn a_wish_for_too_many_bricks_is_lowered() {
-        let bounds = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
-        for records in [1 << 28, u32::MAX as usize] {
-            let cells = Cells::new(bounds, records, Resolution::RecordsPerBrick(1)).unwrap();
-            assert!(cells.count() as u64 <= CELLS_MAX && cells.count() as u64 > CELLS_MAX / 2);
-        }
-    }
-
-    #[test]
-    fn resolutions_beyond_the_limit_are_refused() {
-        let bounds = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
-        let cells = |n| Cells::new(bounds, 10, Resolution::LongestSide(n));
-        assert!(cells(512).is_ok());
-        assert_eq!(cells(0), Err(Error::Resolution { dims: [0; 3] }));
-        let error = cells(u32::MAX).unwrap_err();
-        assert!(matches!(error, Error::Resolution { dims } if dims[0] >= 1 << 23), "{error}");
-    }
-
-    #[test]
-    fn a_place_and_its_flat_index_belong_together() {
-        let bounds = Aabb { min: Vec3::ZERO, max: Vec3::new(4.0, 2.0, 3.0) };
-        let cells = Cells::new(bounds, 10, Resolution::LongestSide(4)).unwrap();
-        assert_eq!(cells.dims(), [4, 2, 3]);
-        for flat in 0..24 {
-            assert_eq!(cells.flat(cells.place(flat)), flat);
-        }
-    }
 }

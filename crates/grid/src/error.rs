@@ -28,6 +28,12 @@ pub enum Error {
         /// The number of cells along each axis.
         dims: [u64; 3],
     },
+    /// A width that no cell can have.
+    #[error("cells of width {width}; it must be a positive number")]
+    Width {
+        /// The width.
+        width: f32,
+    },
     /// A scene that is not valid.
     #[error(transparent)]
     Scene(#[from] puncta_core::Error),

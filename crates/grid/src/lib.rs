@@ -23,38 +23,68 @@ it needs 8 bytes for each cell while sorting and 44 bytes for each occupied bric
 */
 
 mod cells;
+mod census;
+mod codes;
+mod dispatch;
 mod error;
+mod fit;
+mod leaf;
+mod partition;
+mod rows;
 mod sort;
 
-pub use crate::{
-    cells::{Cells, Resolution},
-    error::Error,
-};
+pub use crate::{cells::Cells, error::Error, fit::Fit};
 
-use puncta_core::{Aabb, Brick, Record, Scene};
+use crate::{
+    codes::Coder,
+    leaf::{Bricks, How},
+    rows::Rows,
+};
+use puncta_core::{Brick, MAX_RECORDS, Record, Scene};
 
 /// How to lay the grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GridConfig {
     /// How fine it is.
     pub resolution: Resolution,
+    /// Which box the cells fill.
+    pub fit: Fit,
+}
+
+/// How fine a grid is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Resolution {
+    /// The number of cells along the longest side of the box that the cells fill.
+    LongestSide(u32),
+    /// About this many records in a brick, if they were spread evenly over the box that the cells
+    /// fill; more if that would be more cells than a grid can have.
+    RecordsPerBrick(u32),
+    /// The side of a cell, in units of the data.
+    Width(f32),
+}
+
+impl Default for Resolution {
+    fn default() -> Self {
+        Self::RecordsPerBrick(512)
+    }
 }
 
 impl GridConfig {
     /// A grid with this many cells along the longest side of the data.
     #[must_use]
     pub const fn longest_side(cells: u32) -> Self {
-        Self { resolution: Resolution::LongestSide(cells) }
+        Self { resolution: Resolution::LongestSide(cells), fit: Fit::Robust }
     }
 }
 
-/// The bricks of a scene: one for each cell that holds records, in row order (x fastest).
+/// The bricks of a scene: one for each cell that holds records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     cells: Cells,
+    layout: codes::Layout,
     bricks: Vec<Brick>,
-    /// The index of the cell of each brick, ascending.
-    brick_cells: Vec<u32>,
+    /// The code of the cell of each brick, ascending.
+    codes: Vec<u32>,
 }
 
 impl Grid {
@@ -65,11 +95,10 @@ impl Grid {
     /// When a position or radius is not finite, a radius is negative, there are too many records,
     /// or the resolution asks for too many cells. The records keep their order then.
     pub fn sort<R: Record>(records: &mut [R], config: &GridConfig) -> Result<Self, Error> {
-        let bounds = sort::bounds(records)?;
-        let cells = Cells::new(bounds, records.len(), config.resolution)?;
-        let counts = sort::count(records, &cells);
-        sort::permute(records, &counts, |record| cells.index(record.position()));
-        Ok(Self::of_sorted(records, cells, &counts))
+        if records.len() > MAX_RECORDS {
+            return Err(puncta_core::Error::TooManyRecords { records: records.len() }.into());
+        }
+        Self::sort_rows(Rows::new(records), config)
     }
 
     /// Sorts the records of a scene into bricks, in place, and their attributes with them.
@@ -81,12 +110,38 @@ impl Grid {
     /// As [`Grid::sort`], and when the scene is not valid.
     pub fn sort_scene<R: Record>(scene: &mut Scene<R>, config: &GridConfig) -> Result<Self, Error> {
         scene.validate()?;
-        let bounds = sort::bounds(&scene.records)?;
-        let cells = Cells::new(bounds, scene.records.len(), config.resolution)?;
-        let counts = sort::count(&scene.records, &cells);
         scene.keep_order();
-        sort::permute(scene, &counts, |record: &R| cells.index(record.position()));
-        Ok(Self::of_sorted(&scene.records, cells, &counts))
+        Self::sort_rows(Rows::of_scene(scene), config)
+    }
+
+    fn sort_rows<R: Record>(rows: Rows<'_, R>, config: &GridConfig) -> Result<Self, Error> {
+        if rows.len() == 0 {
+            let layout = codes::Layout::new([0; 3], 0);
+            return Ok(Self { cells: Cells::EMPTY, layout, bricks: vec![], codes: vec![] });
+        }
+        let records = &*rows.records;
+        let mut place = match config.fit {
+            Fit::Robust => fit::inner(records),
+            Fit::Whole => fit::whole(census::bounds(records)?),
+        };
+        let mut cells = Cells::new(&place, records.len(), config.resolution)?;
+        let (layout, coder, census) = loop {
+            let bits = codes::Layout::new(cells.dims(), 0).bits();
+            let layout =
+                codes::Layout::new(cells.dims(), sort::split_bits::<R>(records.len(), bits));
+            let coder = Coder::new(&cells, layout.digit(bits - layout.block_bits()..bits));
+            let census = census::take(records, &coder)?;
+            cells = cells.around(census.bounds);
+            let overflow = fit::overflow(&place, &census.bounds, cells.width());
+            if place.overflow == overflow {
+                break (layout, coder, census);
+            }
+            place.overflow = overflow;
+            cells = Cells::new(&place, records.len(), config.resolution)?;
+        };
+        let how = How { coder, layout, sides: cells.sides(), stable: false };
+        let Bricks { bricks, codes } = sort::sort(rows, how, &census.counts);
+        Ok(Self { cells, layout, bricks, codes })
     }
 
     /// The cells of the grid.
@@ -110,40 +165,20 @@ impl Grid {
     /// The place in the grid of a brick; `None` if there is no brick `brick`.
     #[must_use]
     pub fn cell_of(&self, brick: u32) -> Option<[u32; 3]> {
-        self.brick_cells.get(brick as usize).map(|&cell| self.cells.place(cell))
+        self.codes.get(brick as usize).map(|&code| self.layout.decode(code))
     }
 
     /// The brick at a place in the grid; `None` if the cell is empty or outside.
     #[must_use]
     pub fn brick_at(&self, place: [u32; 3]) -> Option<u32> {
-        let inside = place.iter().zip(self.dims()).all(|(&at, dim)| at < dim);
-        let cell = inside.then(|| self.cells.flat(place))?;
-        self.brick_cells.binary_search(&cell).ok().and_then(|brick| u32::try_from(brick).ok())
+        let code = self.cells.contains(place).then(|| self.layout.encode(place))?;
+        self.codes.binary_search(&code).ok().and_then(|brick| u32::try_from(brick).ok())
     }
 
     /// The bytes that the grid holds beside the records.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        size_of_val(self.bricks.as_slice()) + size_of_val(self.brick_cells.as_slice())
-    }
-
-    /// The grid of records that lie in the order of their cells.
-    fn of_sorted<R: Record>(records: &[R], cells: Cells, counts: &[u32]) -> Self {
-        let occupied = counts.iter().filter(|&&count| count > 0).count();
-        let mut grid = Self {
-            cells,
-            bricks: Vec::with_capacity(occupied),
-            brick_cells: Vec::with_capacity(occupied),
-        };
-        let mut start = 0_u32;
-        for (cell, &count) in (0_u32..).zip(counts).filter(|&(_, &count)| count > 0) {
-            let end = start + count;
-            let members = &records[start as usize..end as usize];
-            grid.bricks.push(brick(members, start, &grid.cells.bounds(grid.cells.place(cell))));
-            grid.brick_cells.push(cell);
-            start = end;
-        }
-        grid
+        size_of_val(self.bricks.as_slice()) + size_of_val(self.codes.as_slice())
     }
 }
 
@@ -151,24 +186,4 @@ impl AsRef<[Brick]> for Grid {
     fn as_ref(&self) -> &[Brick] {
         &self.bricks
     }
-}
-
-/// The brick of these records, the first of which is record `start` of the scene.
-fn brick<R: Record>(members: &[R], start: u32, cell: &Aabb) -> Brick {
-    let mut bounds = Aabb::EMPTY;
-    let (mut radius_max, mut volume) = (0.0_f32, 0.0_f64);
-    for record in members {
-        bounds.add(record.position());
-        radius_max = radius_max.max(record.radius());
-        volume += f64::from(record.radius()).powi(3);
-    }
-    volume *= 4.0 / 3.0 * std::f64::consts::PI;
-    // Flat cells would have no volume: each side is at least that of the largest sphere.
-    let sides =
-        (cell.max - cell.min).as_dvec3().max(glam::DVec3::splat(2.0 * f64::from(radius_max)));
-    let density = volume / sides.element_product();
-    #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
-    let density = if density.is_finite() { density as f32 } else { 0.0 };
-    let end = start + u32::try_from(members.len()).unwrap_or(u32::MAX - start);
-    Brick { records: start..end, bounds, radius_max, density }
 }

@@ -1,91 +1,141 @@
 /*!
-The in-place histogram sort: bounds, count, permute.
+The sort: partition into buckets in place, then each bucket into bricks, within the cache.
 
-Counting gives each cell a run of the array. The permutation walks over the cells; where the record
-at the head of a cell's unsorted rest belongs elsewhere, it is swapped to the head of the rest of the
-cell where it belongs. Each swap brings one record to its final place, so there are at most as many
-swaps as records. The result depends on the input alone.
+The floor is the memory: every record must be read once to be counted, read and written once to get
+into its bucket, and once more to get from there into its brick. What lies between is done on records
+that are in the cache.
 */
 
-use crate::{Cells, Error};
-use puncta_core::{Aabb, MAX_RECORDS, Record, Scene};
+use crate::{
+    census,
+    leaf::{Bricks, How, Leaf, Scratch},
+    partition::partition,
+    rows::Rows,
+};
+use puncta_core::Record;
+use std::{ops::Range, sync::Mutex};
 
-/// The box of all positions; every record must be one that a grid can hold.
-pub(crate) fn bounds<R: Record>(records: &[R]) -> Result<Aabb, Error> {
-    if records.len() > MAX_RECORDS {
-        return Err(puncta_core::Error::TooManyRecords { records: records.len() }.into());
+/// How many bytes of records a bucket should have to be sorted in the cache.
+const LEAF_BYTES: usize = 1 << 19;
+
+/// The largest number of buckets a partition is made of, as a power of two: more would not fit the
+/// translation buffers of processors.
+const BUCKETS_MAX: u32 = 11;
+
+/// Sorts rows into bricks; `counts` tells how many there are in each block.
+pub(crate) fn sort<R: Record>(mut rows: Rows<'_, R>, how: How, counts: &[u32]) -> Bricks {
+    let mut buckets = Vec::new();
+    let bits = how.layout.bits() - how.layout.block_bits();
+    split(&mut rows, how, Split { counts, base: 0, bits }, &mut buckets);
+    finish(rows, how, buckets)
+}
+
+/// With how many bits to partition this many rows whose codes differ in `bits` bits.
+pub(crate) fn split_bits<R>(rows: usize, bits: u32) -> u32 {
+    let buckets = (rows * size_of::<R>() / LEAF_BYTES).max(1).next_power_of_two().ilog2() + 1;
+    // A bucket whose cells are too many for its counts is no good either.
+    let least = bits.saturating_sub(14);
+    buckets.max(least).min(BUCKETS_MAX).min(bits)
+}
+
+/// A run of rows that are yet to be sorted into bricks.
+struct Bucket {
+    rows: u32,
+    base: u32,
+    bits: u32,
+}
+
+/// How rows are partitioned.
+struct Split<'a> {
+    /// The number of rows in each bucket.
+    counts: &'a [u32],
+    /// The code where the first bucket starts.
+    base: u32,
+    /// How many bits the codes of a bucket differ in.
+    bits: u32,
+}
+
+/// Partitions rows into buckets, and those that are too large again.
+fn split<R: Record>(rows: &mut Rows<'_, R>, how: How, plan: Split<'_>, buckets: &mut Vec<Bucket>) {
+    let mut start = 0;
+    let homes: Vec<Range<u32>> = plan
+        .counts
+        .iter()
+        .map(|&count| {
+            start += count;
+            start - count..start
+        })
+        .collect();
+    if homes.len() > 1 {
+        partition(rows, &how.coder, &homes);
     }
-    let mut bounds = Aabb::EMPTY;
-    for (index, record) in records.iter().enumerate() {
-        let (position, radius) = (record.position(), record.radius());
-        if !position.is_finite() {
-            return Err(Error::Position { index, position });
+    let mut rest = rows.reborrow();
+    for (bucket, home) in (0_u32..).zip(&homes) {
+        let mut inside = rest.split_off_front(home.len());
+        if inside.len() == 0 {
+            continue;
         }
-        if !(0.0..f32::INFINITY).contains(&radius) {
-            return Err(Error::Radius { index, radius });
+        let (base, bits) = (plan.base + (bucket << plan.bits), plan.bits);
+        let is_small = inside.len() * size_of::<R>() <= 3 * LEAF_BYTES;
+        if is_small || bits == 0 {
+            buckets.push(Bucket { rows: home.end - home.start, base, bits });
+            continue;
         }
-        bounds.add(position);
-    }
-    Ok(bounds)
-}
-
-/// The number of records in each cell.
-pub(crate) fn count<R: Record>(records: &[R], cells: &Cells) -> Vec<u32> {
-    let mut counts = vec![0; cells.count()];
-    for record in records {
-        counts[cells.index(record.position())] += 1;
-    }
-    counts
-}
-
-/// Records that can change places.
-pub(crate) trait Swap<R> {
-    fn record(&self, index: usize) -> &R;
-    fn swap(&mut self, a: usize, b: usize);
-}
-
-impl<R> Swap<R> for [R] {
-    fn record(&self, index: usize) -> &R {
-        &self[index]
-    }
-
-    fn swap(&mut self, a: usize, b: usize) {
-        <[R]>::swap(self, a, b);
+        let rest_bits = bits - split_bits::<R>(inside.len(), bits);
+        let how = How { coder: how.coder.with(how.layout.digit(rest_bits..bits)), ..how };
+        let counts = &census::count(inside.records, &how.coder);
+        split(&mut inside, how, Split { counts, base, bits: rest_bits }, buckets);
     }
 }
 
-impl<R: Record> Swap<R> for Scene<R> {
-    fn record(&self, index: usize) -> &R {
-        &self.records[index]
-    }
-
-    fn swap(&mut self, a: usize, b: usize) {
-        Self::swap(self, a, b);
-    }
-}
-
-/// Puts records in the order of their cells, of which `counts` tells the sizes.
-pub(crate) fn permute<R, S: Swap<R> + ?Sized>(
-    records: &mut S,
-    counts: &[u32],
-    cell: impl Fn(&R) -> usize,
-) {
-    let starts = counts.iter().scan(0_u32, |start, &count| {
-        let this = *start;
-        *start += count;
-        Some(this)
+/// Sorts buckets into bricks, in parallel.
+fn finish<R: Record>(mut rows: Rows<'_, R>, how: How, buckets: Vec<Bucket>) -> Bricks {
+    let mut start = 0;
+    let leaves = buckets.into_iter().enumerate().map(|(index, bucket)| {
+        let Bucket { rows: count, base, bits } = bucket;
+        let leaf = Leaf { rows: rows.split_off_front(count as usize), start, base, bits };
+        start += count;
+        (index, leaf)
     });
-    let mut heads: Vec<u32> = starts.collect();
-    let mut end = 0;
-    for here in 0..counts.len() {
-        end += counts[here];
-        while heads[here] < end {
-            let head = heads[here];
-            let there = cell(records.record(head as usize));
-            if there != here {
-                records.swap(head as usize, heads[there] as usize);
-            }
-            heads[there] += 1;
+    let (leaves, done) = (Mutex::new(leaves), Mutex::new(Ordered::default()));
+    rayon::scope(|scope| {
+        for _ in 0..rayon::current_num_threads() {
+            scope.spawn(|_| {
+                let (mut scratch, mut bricks) = (Scratch::new(), Bricks::default());
+                loop {
+                    let next = leaves.lock().ok().and_then(|mut leaves| leaves.next());
+                    let Some((index, leaf)) = next else { break };
+                    scratch.sort(leaf, how, &mut bricks);
+                    if let Ok(mut done) = done.lock() {
+                        bricks = done.add(index, bricks);
+                    }
+                }
+            });
         }
+    });
+    done.into_inner().map(|done| done.all).unwrap_or_default()
+}
+
+/// Bricks of buckets that are ready in any order, and appended in theirs.
+#[derive(Default)]
+struct Ordered {
+    all: Bricks,
+    next: usize,
+    waiting: Vec<(usize, Bricks)>,
+    spare: Vec<Bricks>,
+}
+
+impl Ordered {
+    /// Adds the bricks of a bucket; gives buffers for those of another.
+    fn add(&mut self, index: usize, bricks: Bricks) -> Bricks {
+        self.waiting.push((index, bricks));
+        while let Some(at) = self.waiting.iter().position(|(index, _)| *index == self.next) {
+            let (_, mut bricks) = self.waiting.swap_remove(at);
+            self.all.bricks.append(&mut bricks.bricks);
+            self.all.codes.append(&mut bricks.codes);
+            self.spare.push(bricks);
+            self.next += 1;
+        }
+        self.spare.pop().unwrap_or_default()
     }
 }

@@ -1,0 +1,77 @@
+//! Rows: records and the columns that go with them, to be moved together.
+
+use bytemuck::cast_slice_mut;
+use puncta_core::{Attributes, Record, Scene};
+use std::mem;
+
+/// Records and their columns; all are equally long.
+#[derive(Debug)]
+pub(crate) struct Rows<'a, R> {
+    pub(crate) records: &'a mut [R],
+    pub(crate) lanes: Vec<Lane<'a>>,
+}
+
+/// A column: one value for each record, of a size that the sort knows.
+#[derive(Debug)]
+pub(crate) enum Lane<'a> {
+    Words(&'a mut [[u8; 4]]),
+    Bytes(&'a mut [u8]),
+}
+
+impl<'a, R: Record> Rows<'a, R> {
+    /// Records without columns.
+    pub(crate) fn new(records: &'a mut [R]) -> Self {
+        Self { records, lanes: Vec::new() }
+    }
+
+    /// The records of a scene and all their attributes, the ids first.
+    pub(crate) fn of_scene(scene: &'a mut Scene<R>) -> Self {
+        let Attributes { ids, colors, elements, scalars } = &mut scene.attributes;
+        let ids = ids.as_mut().map(|ids| Lane::Words(cast_slice_mut(ids)));
+        let colors = colors.as_mut().map(|colors| Lane::Words(colors));
+        let elements = elements.as_mut().map(|elements| Lane::Bytes(elements));
+        let scalars = scalars.iter_mut().map(|s| Lane::Words(cast_slice_mut(&mut s.values)));
+        let lanes = ids.into_iter().chain(colors).chain(elements).chain(scalars).collect();
+        Self { records: &mut scene.records, lanes }
+    }
+
+    /// The first `count` rows; the others stay.
+    pub(crate) fn split_off_front(&mut self, count: usize) -> Self {
+        Self {
+            records: split_off_front(&mut self.records, count),
+            lanes: self.lanes.iter_mut().map(|lane| lane.split_off_front(count)).collect(),
+        }
+    }
+
+    /// The same rows, borrowed for less long.
+    pub(crate) fn reborrow(&mut self) -> Rows<'_, R> {
+        Rows { records: self.records, lanes: self.lanes.iter_mut().map(Lane::reborrow).collect() }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.records.len()
+    }
+}
+
+impl<'a> Lane<'a> {
+    fn split_off_front(&mut self, count: usize) -> Self {
+        match self {
+            Self::Words(words) => Self::Words(split_off_front(words, count)),
+            Self::Bytes(bytes) => Self::Bytes(split_off_front(bytes, count)),
+        }
+    }
+
+    fn reborrow(&mut self) -> Lane<'_> {
+        match self {
+            Self::Words(words) => Lane::Words(words),
+            Self::Bytes(bytes) => Lane::Bytes(bytes),
+        }
+    }
+}
+
+/// Cuts the first `count` values off a slice.
+fn split_off_front<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let (front, back) = mem::take(slice).split_at_mut(count);
+    *slice = back;
+    front
+}
