@@ -76,7 +76,7 @@ proptest! {
     fn attributes_and_ids_follow(records in spheres(), resolution in resolution()) {
         let mut scene = Scene::new(records.clone());
         let values: Vec<f32> = (0..records.len()).map(|i| i as f32).collect();
-        scene.attributes.scalars.push(Scalar { name: "index".into(), values });
+        scene.attributes.scalars.push(Scalar { name: "index".into(), values: values.into() });
         Grid::sort_scene(&mut scene, &GridConfig { resolution }).unwrap();
         // A second sort with another grid must not forget the first order.
         Grid::sort_scene(&mut scene, &GridConfig::longest_side(5)).unwrap();
