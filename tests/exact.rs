@@ -219,7 +219,7 @@ fn a_moved_scene_gives_the_same_picture() {
 #[test]
 fn coincident_spheres_show_the_lower_id() {
     let mut scene = Scene::new(vec![Sphere::new([0.1, 0.2, 0.3], 0.5); 50]);
-    scene.records.reverse();
+    scene.records.to_mut().reverse();
     let eye = DVec3::new(0.0, 0.0, 4.0);
     let view = View::look_at(eye, DVec3::ZERO, DVec3::Y).unwrap().with_size(64, 64).unwrap();
     let picture = render(&mut scene, &view, 3);

@@ -83,7 +83,7 @@ fn a_second_round_changes_nothing() {
 #[test]
 fn radii_over_many_decades_are_kept() {
     let sphere = |i: u8| Sphere::new([f32::from(i), 0.1, -1e-20], 1e-30 * 4_f32.powi(i.into()));
-    let before = Scene::new((0..60).map(sphere).collect());
+    let before = Scene::new((0..60).map(sphere).collect::<Vec<_>>());
     for name in ["a.ply", "a.xyz", "a.mmpld"] {
         check_spheres(&before, &write_and_read(name, &before), name);
     }

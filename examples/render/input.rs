@@ -74,7 +74,7 @@ fn generate(spec: &str, options: &Options) -> Result<Input> {
     let total = generator.remaining().unwrap_or(0);
     let bar = Bar::counting("making", total);
     let mut scene = Scene::new(Vec::new());
-    let room = scene.records.try_reserve_exact(usize::try_from(total)?);
+    let room = scene.records.to_mut().try_reserve_exact(usize::try_from(total)?);
     let bytes = total * size_of::<Sphere>() as u64;
     room.with_context(|| format!("{spec}: no room for n={total} spheres, {bytes} bytes"))?;
     const CHUNK: usize = 1 << 16;
@@ -109,7 +109,7 @@ fn set_radii(scene: &mut Scene<Sphere>, options: &Options) -> Result<()> {
     if options.radius.is_none() && options.radius_scale == 1.0 {
         return Ok(());
     }
-    for sphere in &mut scene.records {
+    for sphere in scene.records.to_mut() {
         let radius = options.radius.unwrap_or(f64::from(sphere.radius)) * options.radius_scale;
         sphere.radius = radius as f32;
         if !(sphere.radius.is_normal() && sphere.radius > 0.0) {

@@ -33,6 +33,7 @@ a sphere open, one looks through the cut at what lies behind.
 
 mod bounds;
 mod brick;
+mod column;
 mod error;
 mod frame;
 mod image;
@@ -47,6 +48,7 @@ mod view;
 pub use crate::{
     bounds::{Aabb, Bounds},
     brick::{Brick, Visible, VisibleBrick},
+    column::Column,
     error::Error,
     image::Image,
     picture::{NO_RECORD, Picture},

@@ -1,6 +1,6 @@
 //! Scenes: records, the origin they are relative to, and what else is known about them.
 
-use crate::{Bounds, Error, NO_RECORD, Record, Sphere, inner_range};
+use crate::{Bounds, Column, Error, NO_RECORD, Record, Sphere, inner_range};
 use glam::DVec3;
 
 /// The largest number of records in a scene: ids are `u32`, and one value means *nothing*.
@@ -25,7 +25,7 @@ pub struct Scene<R = Sphere> {
     /// The world position that stored positions are relative to.
     pub origin: DVec3,
     /// The records; sorting reorders them.
-    pub records: Vec<R>,
+    pub records: Column<R>,
     /// One value for each record, reordered with the records.
     pub attributes: Attributes,
 }
@@ -34,11 +34,11 @@ pub struct Scene<R = Sphere> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Attributes {
     /// The index each record had in its file or array; `None` while they still lie in that order.
-    pub ids: Option<Vec<u32>>,
+    pub ids: Option<Column<u32>>,
     /// Colors: sRGB and alpha, which opaque renderers do not use.
-    pub colors: Option<Vec<[u8; 4]>>,
+    pub colors: Option<Column<[u8; 4]>>,
     /// Atomic numbers; 0 for an unknown element.
-    pub elements: Option<Vec<u8>>,
+    pub elements: Option<Column<u8>>,
     /// Named measurements.
     pub scalars: Vec<Scalar>,
 }
@@ -49,14 +49,14 @@ pub struct Scalar {
     /// The name of the measurement.
     pub name: String,
     /// A value for each record; NaN where there is none.
-    pub values: Vec<f32>,
+    pub values: Column<f32>,
 }
 
 impl<R: Record> Scene<R> {
     /// A scene around the origin, without attributes.
     #[must_use]
-    pub fn new(records: Vec<R>) -> Self {
-        Self { origin: DVec3::ZERO, records, attributes: Attributes::default() }
+    pub fn new(records: impl Into<Column<R>>) -> Self {
+        Self { origin: DVec3::ZERO, records: records.into(), attributes: Attributes::default() }
     }
 
     /// The world position of a record.
@@ -89,7 +89,7 @@ impl<R: Record> Scene<R> {
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        for record in &self.records {
+        for record in self.records.as_slice() {
             let (position, radius) = (record.position().as_dvec3(), f64::from(record.radius()));
             if position.is_finite() && radius.is_finite() {
                 bounds.add(position - radius);
@@ -106,8 +106,9 @@ impl<R: Record> Scene<R> {
     #[must_use]
     pub fn inner_bounds(&self, outside: f64) -> Bounds {
         const SAMPLES: usize = 1 << 20;
-        let step = self.records.len().div_ceil(SAMPLES).max(1);
-        let sample = || self.records.iter().step_by(step);
+        let records = self.records.as_slice();
+        let step = records.len().div_ceil(SAMPLES).max(1);
+        let sample = || records.iter().step_by(step);
         let offsets = || sample().map(|record| record.position().as_dvec3());
         let along = |axis: usize| inner_range(|| offsets().map(|offset| offset[axis]), outside);
         let [x, y, z] = [along(0), along(1), along(2)];
@@ -143,45 +144,45 @@ impl<R: Record> Scene<R> {
         self.attributes.ids.get_or_insert_with(|| (0..NO_RECORD).take(records).collect());
     }
 
-    /// Swaps two records and their attributes.
+    /// Swaps two records and their attributes. Columns that are shared are copied first.
     ///
     /// # Panics
     ///
     /// When there is no such record, or an attribute does not have its value.
     #[inline]
     pub fn swap(&mut self, a: usize, b: usize) {
-        self.records.swap(a, b);
+        self.records.to_mut().swap(a, b);
         self.attributes.swap(a, b);
     }
 }
 
 impl Attributes {
-    /// Swaps the values of two records.
+    /// Swaps the values of two records. Columns that are shared are copied first.
     ///
     /// # Panics
     ///
     /// When an attribute does not have such a value.
     pub fn swap(&mut self, a: usize, b: usize) {
         if let Some(ids) = &mut self.ids {
-            ids.swap(a, b);
+            ids.to_mut().swap(a, b);
         }
         if let Some(colors) = &mut self.colors {
-            colors.swap(a, b);
+            colors.to_mut().swap(a, b);
         }
         if let Some(elements) = &mut self.elements {
-            elements.swap(a, b);
+            elements.to_mut().swap(a, b);
         }
         for scalar in &mut self.scalars {
-            scalar.values.swap(a, b);
+            scalar.values.to_mut().swap(a, b);
         }
     }
 
-    /// The bytes of all present columns.
+    /// The bytes of all present columns, those that are shared included.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.ids.as_ref().map_or(0, |ids| size_of_val(ids.as_slice()))
             + self.colors.as_ref().map_or(0, |colors| size_of_val(colors.as_slice()))
-            + self.elements.as_ref().map_or(0, Vec::len)
+            + self.elements.as_ref().map_or(0, |elements| elements.len())
             + self.scalars.iter().map(|s| size_of_val(s.values.as_slice())).sum::<usize>()
     }
 
@@ -207,15 +208,18 @@ mod tests {
     #[test]
     fn attributes_follow_a_swap() {
         let mut scene = three();
-        scene.attributes.colors = Some(vec![[0; 4], [1; 4], [2; 4]]);
-        scene.attributes.elements = Some(vec![6, 7, 8]);
-        scene.attributes.scalars.push(Scalar { name: "speed".into(), values: vec![0.0, 1.0, 2.0] });
+        scene.attributes.colors = Some([[0; 4], [1; 4], [2; 4]].into());
+        scene.attributes.elements = Some([6, 7, 8].into());
+        scene
+            .attributes
+            .scalars
+            .push(Scalar { name: "speed".into(), values: [0.0, 1.0, 2.0].into() });
         scene.keep_order();
         scene.swap(0, 2);
         assert_eq!(scene.id(0), 2);
         assert_eq!(scene.records[0].center[0], 2.0);
         assert_eq!(scene.attributes.colors.as_ref().map(|colors| colors[2]), Some([0; 4]));
-        assert_eq!(scene.attributes.elements, Some(vec![8, 7, 6]));
+        assert_eq!(scene.attributes.elements, Some([8, 7, 6].into()));
         assert_eq!(scene.scalar("speed").map(|s| s.values[0]), Some(2.0));
         assert_eq!(scene.attributes.bytes(), 3 * (4 + 4 + 1 + 4));
     }
@@ -223,7 +227,7 @@ mod tests {
     #[test]
     fn lengths_that_differ_are_told() {
         let mut scene = three();
-        scene.attributes.elements = Some(vec![1]);
+        scene.attributes.elements = Some([1].into());
         let error = scene.validate().unwrap_err();
         assert_eq!(error.to_string(), "attribute elements has 1 values for 3 records");
     }
@@ -231,8 +235,8 @@ mod tests {
     #[test]
     fn records_that_are_not_finite_do_not_spoil_the_bounds() {
         let mut scene = three();
-        scene.records.push(Sphere::new([f32::NAN, 0.0, 0.0], 1.0));
-        scene.records.push(Sphere::new([0.0, f32::INFINITY, 0.0], 1.0));
+        let bad = [[f32::NAN, 0.0, 0.0], [0.0, f32::INFINITY, 0.0]];
+        scene.records.extend(bad.map(|center| Sphere::new(center, 1.0)));
         assert_eq!(scene.bounds().max, DVec3::new(3.0, 1.0, 1.0));
     }
 }

@@ -75,7 +75,7 @@ pub trait Source: Sized {
         let mut scene = Scene::new(Vec::new());
         let remaining = self.remaining().and_then(|remaining| usize::try_from(remaining).ok());
         // Room is a favor: a source that promises more than there is memory grows as it goes.
-        scene.records.try_reserve_exact(remaining.unwrap_or(0)).ok();
+        scene.records.to_mut().try_reserve_exact(remaining.unwrap_or(0)).ok();
         while self.append(&mut scene, CHUNK)? == CHUNK {}
         Ok(scene)
     }
@@ -105,7 +105,7 @@ impl<R: Record> Source for SliceSource<'_, R> {
 
     fn append(&mut self, scene: &mut Scene<R>, limit: usize) -> Result<usize, Infallible> {
         let (chunk, rest) = self.records.split_at(limit.min(self.records.len()));
-        scene.records.extend_from_slice(chunk);
+        scene.records.to_mut().extend_from_slice(chunk);
         self.records = rest;
         Ok(chunk.len())
     }

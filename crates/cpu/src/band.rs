@@ -58,12 +58,13 @@ impl Band<'_> {
         batch: &Batch<'_, R>,
         rows_of_bricks: &[RangeInclusive<i64>],
     ) {
+        let all = batch.scene.records.as_slice();
         for (VisibleBrick { index, .. }, rows) in batch.visible.iter().zip(rows_of_bricks) {
             if *rows.start() > self.last_row() || *rows.end() < self.first_row {
                 continue;
             }
             let records = batch.bricks[*index as usize].records.clone();
-            let members = &batch.scene.records[records.start as usize..records.end as usize];
+            let members = &all[records.start as usize..records.end as usize];
             for (id, record) in records.zip(members) {
                 self.draw_sphere(record, id);
             }

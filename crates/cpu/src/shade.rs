@@ -107,10 +107,11 @@ pub fn shade<R: Record>(
     let fine = view.clone().with_size(picture.width, picture.height)?;
     let camera = Camera::new(&fine, scene.origin);
     let colors = Colors::new(scene, shading.coloring)?;
+    let records = scene.records.as_slice();
     let decode: [f32; 256] = std::array::from_fn(|byte| decode(byte as f32 / 255.0));
     let light = |column: usize, row: usize| -> Option<Vec3> {
         let id = picture.id[row * picture.width as usize + column];
-        let record = scene.records.get(id as usize)?;
+        let record = records.get(id as usize)?;
         let center = camera.place(record.position().as_dvec3());
         let ray = camera.ray(column as f64, row as f64);
         let hit = camera.hit(ray, center, f64::from(record.radius()));
@@ -171,7 +172,8 @@ impl Coloring<'_> {
                 Some(inner_range(|| values.iter().map(|&value| f64::from(value)), OUTSIDE))
             }
             Coloring::Height { axis, .. } => {
-                let offsets = || scene.records.iter().map(|record| record.position().as_dvec3());
+                let records = scene.records.as_slice();
+                let offsets = || records.iter().map(|record| record.position().as_dvec3());
                 let heights = || offsets().map(|offset| axis.dot(scene.origin + offset));
                 Some(inner_range(heights, OUTSIDE))
             }

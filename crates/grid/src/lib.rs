@@ -103,7 +103,8 @@ impl Grid {
 
     /// Sorts the records of a scene into bricks, in place, and their attributes with them.
     ///
-    /// The order they had is kept in their ids: [`Scene::id`] gives the same index as before.
+    /// The order they had is kept in their ids: [`Scene::id`] gives the same index as before. Columns
+    /// that are shared are copied first.
     ///
     /// # Errors
     ///

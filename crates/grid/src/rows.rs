@@ -27,12 +27,12 @@ impl<'a, R: Record> Rows<'a, R> {
     /// The records of a scene and all their attributes, the ids first.
     pub(crate) fn of_scene(scene: &'a mut Scene<R>) -> Self {
         let Attributes { ids, colors, elements, scalars } = &mut scene.attributes;
-        let ids = ids.as_mut().map(|ids| Lane::Words(cast_slice_mut(ids)));
-        let colors = colors.as_mut().map(|colors| Lane::Words(colors));
-        let elements = elements.as_mut().map(|elements| Lane::Bytes(elements));
-        let scalars = scalars.iter_mut().map(|s| Lane::Words(cast_slice_mut(&mut s.values)));
+        let ids = ids.as_mut().map(|ids| Lane::Words(cast_slice_mut(ids.to_mut())));
+        let colors = colors.as_mut().map(|colors| Lane::Words(colors.to_mut()));
+        let elements = elements.as_mut().map(|elements| Lane::Bytes(elements.to_mut()));
+        let scalars = scalars.iter_mut().map(|s| Lane::Words(cast_slice_mut(s.values.to_mut())));
         let lanes = ids.into_iter().chain(colors).chain(elements).chain(scalars).collect();
-        Self { records: &mut scene.records, lanes }
+        Self { records: scene.records.to_mut(), lanes }
     }
 
     /// The first `count` rows; the others stay.

@@ -89,7 +89,7 @@ proptest! {
     fn attributes_and_ids_follow(records in spheres(), config in config()) {
         let mut scene = Scene::new(records.clone());
         let values: Vec<f32> = (0..records.len()).map(|i| i as f32).collect();
-        scene.attributes.scalars.push(Scalar { name: "index".into(), values });
+        scene.attributes.scalars.push(Scalar { name: "index".into(), values: values.into() });
         if Grid::sort_scene(&mut scene, &config).is_err() {
             return Ok(());
         }

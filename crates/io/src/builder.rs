@@ -14,7 +14,7 @@ use crate::{
     radius,
 };
 use glam::DVec3;
-use puncta_core::{Attributes, MAX_RECORDS, Scalar, Scene, Sphere};
+use puncta_core::{Attributes, Column, MAX_RECORDS, Scalar, Scene, Sphere};
 
 /// How many rows of double precision wait for the origin to be chosen.
 const HEAD: usize = 32_768;
@@ -113,7 +113,7 @@ pub(crate) struct Builder<'a> {
 impl<'a> Builder<'a> {
     pub(crate) fn new(options: &'a ReadOptions, precision: Precision, columns: &Columns) -> Self {
         let wanted = columns.scalars.iter().enumerate().filter(|(_, name)| options.wants(name));
-        let scalar = |name: &String| Scalar { name: name.clone(), values: Vec::new() };
+        let scalar = |name: &String| Scalar { name: name.clone(), values: Column::new() };
         Self {
             options,
             precision,
@@ -145,7 +145,7 @@ impl<'a> Builder<'a> {
             elements.reserve_exact(count);
         }
         for (_, scalar) in &mut self.scalars {
-            scalar.values.reserve_exact(count);
+            scalar.values.to_mut().reserve_exact(count);
         }
         Ok(())
     }
@@ -177,7 +177,7 @@ impl<'a> Builder<'a> {
             elements.push(row.element);
         }
         for (column, scalar) in &mut self.scalars {
-            scalar.values.push(row.scalars.get(*column).copied().unwrap_or(f32::NAN));
+            scalar.values.to_mut().push(row.scalars.get(*column).copied().unwrap_or(f32::NAN));
         }
         self.rows += 1;
         Ok(())
@@ -294,13 +294,13 @@ impl<'a> Builder<'a> {
             missing.for_each(|sphere| sphere.radius = estimate);
         }
         let attributes = Attributes {
-            ids: self.ids,
-            colors: self.colors,
-            elements: self.elements,
+            ids: self.ids.map(Column::from),
+            colors: self.colors.map(Column::from),
+            elements: self.elements.map(Column::from),
             scalars: self.scalars.into_iter().map(|(_, scalar)| scalar).collect(),
         };
         let origin = self.origin.unwrap_or(DVec3::ZERO);
-        Ok((Scene { origin, records: self.records, attributes }, self.report))
+        Ok((Scene { origin, records: self.records.into(), attributes }, self.report))
     }
 
     /// Gives back the room that no row took.
@@ -309,7 +309,7 @@ impl<'a> Builder<'a> {
         self.ids.iter_mut().for_each(Vec::shrink_to_fit);
         self.colors.iter_mut().for_each(Vec::shrink_to_fit);
         self.elements.iter_mut().for_each(Vec::shrink_to_fit);
-        self.scalars.iter_mut().for_each(|(_, scalar)| scalar.values.shrink_to_fit());
+        self.scalars.iter_mut().for_each(|(_, scalar)| scalar.values.to_mut().shrink_to_fit());
     }
 
     /// The offset to store for a position; it may be put right later.
@@ -459,7 +459,7 @@ mod tests {
             builder.push(&row(x, radius), Place::Line(7)).unwrap();
         }
         let (scene, report) = builder.finish().unwrap();
-        assert_eq!(scene.attributes.ids, Some(vec![0, 4]));
+        assert_eq!(scene.attributes.ids, Some([0, 4].into()));
         assert_eq!(report.skipped_count(), 3);
         assert_eq!(report.skipped[1].value, "-1");
     }

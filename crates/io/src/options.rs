@@ -34,7 +34,7 @@ type OnProgress = Arc<dyn Fn(u64, u64) + Send + Sync>;
 /// let file = b"2\nwater without one H\nO 0.0 0.0 0.1\nH 0.0 0.8 -0.5\n";
 /// let loaded = ReadOptions::default().radius_scale(0.5).read_bytes("water.xyz", file)?;
 /// assert_eq!(loaded.scene.records.len(), 2);
-/// assert_eq!(loaded.scene.attributes.elements, Some(vec![8, 1]));
+/// assert_eq!(loaded.scene.attributes.elements, Some([8, 1].into()));
 /// assert!(loaded.report.skipped.is_empty());
 /// # Ok::<(), puncta_io::Error>(())
 /// ```

@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn a_scene_that_is_not_whole_is_refused() {
         let mut scene = Scene::new(vec![Sphere::default()]);
-        scene.attributes.elements = Some(Vec::new());
+        scene.attributes.elements = Some(Vec::new().into());
         let error = write("a.xyz", &scene).unwrap_err().to_string();
         assert_eq!(error, "a.xyz: attribute elements has 0 values for 1 records");
         let nowhere = write("no-such-folder/a.xyz", &Scene::new(Vec::new())).unwrap_err();

@@ -38,7 +38,8 @@ fn written(name: &str, scene: &Scene<Sphere>) -> Vec<u8> {
 
 #[test]
 fn ply_and_mmpld_keep_the_promise() {
-    let mut scene = Scene::new((0..COUNT).map(|i| Sphere::new([x(i), 1.0, 2.0], 0.5)).collect());
+    let sphere = |i| Sphere::new([x(i), 1.0, 2.0], 0.5);
+    let mut scene = Scene::new((0..COUNT).map(sphere).collect::<Vec<_>>());
     check("plain.ply", &written("plain.ply", &scene));
     check("plain.mmpld", &written("plain.mmpld", &scene));
     scene.attributes.colors = Some((0..COUNT).map(u32::to_le_bytes).collect());

@@ -80,7 +80,7 @@ fn cleared_scenes_take_the_next_chunk() {
         let mut source = generator(&spec);
         let mut chunk = Scene::new(Vec::new());
         for start in [0, 400, 800] {
-            chunk.records.clear();
+            chunk.records.to_mut().clear();
             chunk.attributes = Attributes::default();
             let count = source.append(&mut chunk, 400).unwrap();
             assert_eq!(chunk.records, whole.records[start..start + count], "{name}");
@@ -111,14 +111,14 @@ fn counts_are_exact_and_records_can_be_drawn() {
 #[test]
 fn memory_is_that_of_the_records() {
     for name in names() {
-        let scene = scene(&format!("{name}:n=10007"));
-        assert_eq!(scene.records.capacity(), 10_007, "{name}");
+        let mut scene = scene(&format!("{name}:n=10007"));
+        assert_eq!(scene.records.to_mut().capacity(), 10_007, "{name}");
         assert!(scene.attributes.ids.is_none(), "{name}");
-        for scalar in &scene.attributes.scalars {
-            assert_eq!(scalar.values.capacity(), 10_007, "{name}");
+        for scalar in &mut scene.attributes.scalars {
+            assert_eq!(scalar.values.to_mut().capacity(), 10_007, "{name}");
         }
-        let colors = scene.attributes.colors.as_ref();
-        assert!(colors.is_none_or(|colors| colors.capacity() == 10_007), "{name}");
+        let colors = scene.attributes.colors.as_mut();
+        assert!(colors.is_none_or(|colors| colors.to_mut().capacity() == 10_007), "{name}");
     }
 }
 

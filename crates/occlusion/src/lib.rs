@@ -10,7 +10,8 @@ use puncta_core::{Frame, Scene, Sphere, Stage, View, Visible};
 use puncta_grid::{Grid, GridConfig};
 use puncta_occlusion::{Depth, FrustumCull};
 
-let mut scene = Scene::new((0..100_u8).map(|i| Sphere::new([f32::from(i), 0.0, 0.0], 0.5)).collect());
+let spheres = (0..100_u8).map(|i| Sphere::new([f32::from(i), 0.0, 0.0], 0.5));
+let mut scene = Scene::new(spheres.collect::<Vec<_>>());
 let grid = Grid::sort_scene(&mut scene, &GridConfig::longest_side(10))?;
 let view = View::look_at(DVec3::new(55.0, 0.0, 0.0), DVec3::new(99.0, 0.0, 0.0), DVec3::Z)?;
 

@@ -87,7 +87,7 @@ impl Builder<'_> {
         self.ids.iter_mut().for_each(|ids| retain(ids, keep));
         self.colors.iter_mut().for_each(|colors| retain(colors, keep));
         self.elements.iter_mut().for_each(|elements| retain(elements, keep));
-        self.scalars.iter_mut().for_each(|(_, scalar)| retain(&mut scalar.values, keep));
+        self.scalars.iter_mut().for_each(|(_, scalar)| retain(scalar.values.to_mut(), keep));
         self.records = records;
         self.records.retain(|record| record.radius != UNUSABLE);
     }
@@ -129,16 +129,16 @@ mod tests {
             }
             builder.end_radii();
             assert!(!builder.keeps(3));
-            builder.add_scalar(Scalar { name: "a".into(), values: vec![10.0, 12.0, 14.0] });
-            builder.add_scalar(Scalar { name: "a".into(), values: vec![0.0; 3] });
+            builder.add_scalar(Scalar { name: "a".into(), values: vec![10.0, 12.0, 14.0].into() });
+            builder.add_scalar(Scalar { name: "a".into(), values: vec![0.0; 3].into() });
             let (scene, report) = builder.finish().unwrap();
             scene.validate().unwrap();
             let xs: Vec<f64> = (0..3).map(|i| scene.position(i).x).collect();
             assert_eq!(xs, [0.0, 2.0, 4.0]);
             let radii: Vec<f32> = scene.records.iter().map(|sphere| sphere.radius).collect();
             assert_eq!(radii, [1.0, 2.0, 0.5]);
-            assert_eq!(scene.attributes.ids, Some(vec![0, 2, 4]));
-            assert_eq!(scene.attributes.colors, Some(vec![[0; 4], [2; 4], [4; 4]]));
+            assert_eq!(scene.attributes.ids, Some([0, 2, 4].into()));
+            assert_eq!(scene.attributes.colors, Some([[0; 4], [2; 4], [4; 4]].into()));
             assert_eq!(scene.attributes.scalars.len(), 1);
             assert_eq!(report.skipped_count(), 2);
             assert_eq!(report.skipped[1].value, "-1");

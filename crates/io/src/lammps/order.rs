@@ -1,6 +1,6 @@
 //! Order by atom id, in place.
 
-use puncta_core::Scene;
+use puncta_core::{Column, Scene};
 
 /// Orders the records of a scene by atom id, and makes their ids ranks.
 ///
@@ -36,7 +36,7 @@ fn repeated(order: &[u32], atoms: &[i64]) -> Option<(u64, i64)> {
 
 /// Where rows were skipped: makes the ids, which are rows, ranks, and `order` one of records.
 fn rank_ids(scene: &mut Scene, order: &mut Vec<u32>) {
-    let Some(ids) = &mut scene.attributes.ids else { return };
+    let Some(ids) = scene.attributes.ids.as_mut().map(Column::to_mut) else { return };
     // The inverse of the order: the rank of each row.
     let mut ranks = vec![0; order.len()];
     for (rank, row) in (0..u32::MAX).zip(&*order) {
@@ -77,7 +77,7 @@ mod tests {
     fn scene(rows: u16, skipped: &[u16]) -> Scene {
         let kept: Vec<u16> = (0..rows).filter(|row| !skipped.contains(row)).collect();
         let record = |row: &u16| Sphere::new([f32::from(*row), 0.0, 0.0], 1.0);
-        let mut scene = Scene::new(kept.iter().map(record).collect());
+        let mut scene = Scene::new(kept.iter().map(record).collect::<Vec<_>>());
         if !skipped.is_empty() {
             scene.attributes.ids = Some(kept.iter().map(|row| u32::from(*row)).collect());
         }

@@ -34,7 +34,7 @@ fn positions(loaded: &Loaded) -> Vec<[f64; 3]> {
 }
 
 fn scalar(loaded: &Loaded, name: &str) -> Vec<f32> {
-    loaded.scene.scalar(name).unwrap().values.clone()
+    loaded.scene.scalar(name).unwrap().values.to_vec()
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn ids_are_ranks_among_all_rows() {
     let loaded = load(&options, &frame(&rows, "id x y z")).unwrap();
     // The ids in order are 1, 3, 5, 7, 8, 9 and the one that is none.
     assert_eq!(positions(&loaded), [[4.0, 0.0, 0.0], [0.0; 3], [2.0, 0.0, 0.0]]);
-    assert_eq!(loaded.scene.attributes.ids, Some(vec![0, 3, 5]));
+    assert_eq!(loaded.scene.attributes.ids, Some([0, 3, 5].into()));
     assert!(loaded.scene.attributes.scalars.is_empty());
     let found: Vec<_> =
         loaded.report.skipped.iter().map(|s| (s.problem, s.count, s.first.to_string())).collect();
@@ -89,7 +89,7 @@ fn columns_are_what_their_names_say() {
     let columns = "element mol z diameter y vx x c_1[2] label";
     let loaded = read(&frame(&["Fe 7 3 1.5 2 -0.1 1 1e-3 a", "O 8 6 1 5 0.2 4 2e-3 b"], columns));
     assert_eq!(positions(&loaded), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
-    assert_eq!(loaded.scene.attributes.elements, Some(vec![26, 8]));
+    assert_eq!(loaded.scene.attributes.elements, Some([26, 8].into()));
     assert_eq!(loaded.scene.records[0].radius, 0.75);
     assert_eq!(scalar(&loaded, "c_1[2]"), [1e-3, 2e-3]);
     assert_eq!(scalar(&loaded, "vx"), [-0.1, 0.2]);
@@ -236,5 +236,5 @@ fn strict_reading_names_the_line() {
 #[test]
 fn a_row_of_iodine_is_no_item() {
     let loaded = read(&frame(&["I 1 2 3", "ITE 1 2 4"], "element x y z").replace('\n', "\r\n"));
-    assert_eq!(loaded.scene.attributes.elements, Some(vec![53, 0]));
+    assert_eq!(loaded.scene.attributes.elements, Some([53, 0].into()));
 }

@@ -201,7 +201,7 @@ END
         for (found, expected) in positions(&loaded).iter().zip(expected) {
             assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4), "{found:?}");
         }
-        assert_eq!(loaded.scene.attributes.elements, Some(vec![7, 7, 12, 8]));
+        assert_eq!(loaded.scene.attributes.elements, Some([7, 7, 12, 8].into()));
         assert_eq!(loaded.scene.records[2].radius, 1.73);
         let scalar = |name: &str| loaded.scene.scalar(name).unwrap().values.clone();
         assert_eq!(scalar("residue"), [-3.0, -3.0, 168.0, 9999.0]);
@@ -339,7 +339,7 @@ END
                     ATOM  A0000 1HB  ALA A   5       4.000   0.000   0.000\n\
                     ATOMS are no atoms\nendmdl\n";
         let loaded = read(text);
-        assert_eq!(loaded.scene.attributes.elements, Some(vec![6, 20, 7, 8, 1]));
+        assert_eq!(loaded.scene.attributes.elements, Some([6, 20, 7, 8, 1].into()));
         assert_eq!(loaded.scene.records.len(), 5);
     }
 

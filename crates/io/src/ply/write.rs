@@ -18,6 +18,8 @@ pub(crate) fn write(out: &mut (impl Write + ?Sized), scene: &Scene<Sphere>) -> R
     let mut out = BufWriter::with_capacity(1 << 16, out);
     out.write_all(header(scene).as_bytes())?;
     let attributes = &scene.attributes;
+    let (colors, elements) = (attributes.colors.as_deref(), attributes.elements.as_deref());
+    let scalars: Vec<&[f32]> = attributes.scalars.iter().map(|s| s.values.as_slice()).collect();
     for (index, record) in scene.records.iter().enumerate() {
         if scene.origin == DVec3::ZERO {
             record.center.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
@@ -26,14 +28,14 @@ pub(crate) fn write(out: &mut (impl Write + ?Sized), scene: &Scene<Sphere>) -> R
             position.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
         }
         out.write_all(&record.radius.to_le_bytes())?;
-        if let Some(colors) = &attributes.colors {
+        if let Some(colors) = colors {
             out.write_all(&colors[index])?;
         }
-        if let Some(elements) = &attributes.elements {
+        if let Some(elements) = elements {
             out.write_all(&[elements[index]])?;
         }
-        for scalar in &attributes.scalars {
-            out.write_all(&scalar.values[index].to_le_bytes())?;
+        for values in &scalars {
+            out.write_all(&values[index].to_le_bytes())?;
         }
     }
     Ok(out.flush()?)

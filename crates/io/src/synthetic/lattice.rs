@@ -151,7 +151,7 @@ mod tests {
     fn atoms_have_the_neighbors_of_their_crystal() {
         for (kind, neighbors, element) in [("sc", 6, 84), ("bcc", 8, 26), ("fcc", 12, 29)] {
             let scene = scene(&format!("lattice:n=3000,r=0.5,kind={kind}"));
-            assert_eq!(scene.attributes.elements, Some(vec![element; 3000]));
+            assert_eq!(scene.attributes.elements, Some(vec![element; 3000].into()));
             let nearest_to_origin = (0..3000)
                 .min_by(|a, b| scene.position(*a).length().total_cmp(&scene.position(*b).length()))
                 .unwrap();

@@ -65,7 +65,7 @@ mod spec;
 pub use spec::{Key, Kind, SpecError};
 
 use glam::DVec3;
-use puncta_core::{Scalar, Scene, Source, Sphere};
+use puncta_core::{Column, Scalar, Scene, Source, Sphere};
 use spec::Spec;
 use std::{convert::Infallible, fmt, str::FromStr};
 
@@ -151,13 +151,13 @@ impl Generator {
 
     /// Makes room in all columns, for no more than what is needed.
     fn reserve_exact(&self, scene: &mut Scene, records: usize) {
-        scene.records.reserve_exact(records);
+        scene.records.to_mut().reserve_exact(records);
         let (colors, elements, scalar) = self.scene.columns();
         if colors {
-            scene.attributes.colors.get_or_insert_default().reserve_exact(records);
+            scene.attributes.colors.get_or_insert_default().to_mut().reserve_exact(records);
         }
         if elements {
-            scene.attributes.elements.get_or_insert_default().reserve_exact(records);
+            scene.attributes.elements.get_or_insert_default().to_mut().reserve_exact(records);
         }
         if let Some(name) = scalar {
             scalar_column(scene, name).reserve_exact(records);
@@ -251,18 +251,18 @@ fn append<M: Make>(making: &mut M, scene: &mut Scene, count: usize) {
     const RUN: usize = 256;
     let mut rows = [Row::default(); RUN];
     let mut left = count;
-    scene.records.reserve(count);
+    scene.records.to_mut().reserve(count);
     while left > 0 {
         let run = &mut rows[..left.min(RUN)];
         run.fill_with(|| making.row());
         left -= run.len();
-        scene.records.extend(run.iter().map(|row| Sphere::new(row.position, row.radius)));
+        scene.records.to_mut().extend(run.iter().map(|row| Sphere::new(row.position, row.radius)));
         if M::COLORS {
-            let colors = scene.attributes.colors.get_or_insert_default();
+            let colors = scene.attributes.colors.get_or_insert_default().to_mut();
             colors.extend(run.iter().map(|row| [row.color[0], row.color[1], row.color[2], 255]));
         }
         if M::ELEMENTS {
-            let elements = scene.attributes.elements.get_or_insert_default();
+            let elements = scene.attributes.elements.get_or_insert_default().to_mut();
             elements.extend(run.iter().map(|row| row.element));
         }
         if let Some(name) = M::SCALAR {
@@ -275,8 +275,8 @@ fn append<M: Make>(making: &mut M, scene: &mut Scene, count: usize) {
 fn scalar_column<'a>(scene: &'a mut Scene, name: &str) -> &'a mut Vec<f32> {
     let scalars = &mut scene.attributes.scalars;
     let index = scalars.iter().position(|scalar| scalar.name == name).unwrap_or_else(|| {
-        scalars.push(Scalar { name: name.to_owned(), values: Vec::new() });
+        scalars.push(Scalar { name: name.to_owned(), values: Column::new() });
         scalars.len() - 1
     });
-    &mut scalars[index].values
+    scalars[index].values.to_mut()
 }

@@ -226,19 +226,19 @@ fn read_scalars(
     (array, count): (&Array, u64),
     wanted: Vec<(String, Part)>,
 ) -> Result<(), Fault> {
-    let column = |(name, part)| (part, Scalar { name, values: Vec::with_capacity(builder.kept()) });
-    let mut columns: Vec<(Part, Scalar)> = wanted.into_iter().map(column).collect();
+    let column = |(name, part)| (part, name, Vec::with_capacity(builder.kept()));
+    let mut columns: Vec<(Part, String, Vec<f32>)> = wanted.into_iter().map(column).collect();
     let (mut row, mut is_exact) = (0, true);
     source.tuples((array.kind, width(array)), count, &array.name, |tuple, _| {
         if builder.keeps(row) {
-            for (part, scalar) in &mut columns {
+            for (part, _, values) in &mut columns {
                 let value = match *part {
                     Part::Component(index) => tuple.get(index).copied().unwrap_or(f64::NAN),
                     Part::Length => tuple.iter().map(|x| x * x).sum::<f64>().sqrt(),
                 };
                 let stored = to_f32(value);
                 is_exact &= !matches!(part, Part::Component(_)) || f64::from(stored) == value;
-                scalar.values.push(stored);
+                values.push(stored);
             }
         }
         row += 1;
@@ -247,7 +247,9 @@ fn read_scalars(
     if array.kind.is_integer() && !is_exact {
         builder.warn(format!("the integers of {} are rounded to 24 bits", array.name));
     }
-    columns.into_iter().for_each(|(_, scalar)| builder.add_scalar(scalar));
+    for (_, name, values) in columns {
+        builder.add_scalar(Scalar { name, values: values.into() });
+    }
     Ok(())
 }
 

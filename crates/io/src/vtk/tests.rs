@@ -76,7 +76,7 @@ fn read(bytes: &[u8]) -> Result<Loaded, Error> {
 
 fn scalar(loaded: &Loaded, name: &str) -> Vec<f32> {
     let scalar = loaded.scene.scalar(name);
-    scalar.unwrap_or_else(|| panic!("no scalar {name}")).values.clone()
+    scalar.unwrap_or_else(|| panic!("no scalar {name}")).values.to_vec()
 }
 
 const CORNERS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 90.0];
@@ -187,7 +187,7 @@ fn data_of_points_become_columns() {
         assert_eq!(scalar(&loaded, "uv_1"), [0.25, 0.75, 1.25]);
         assert_eq!(scalar(&loaded, "a b"), [-1.0, 0.0, 1.0]);
         let colors = [[255, 0, 51, 255], [0, 255, 0, 102], [153, 153, 153, 0]];
-        assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec()));
+        assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec().into()));
         let warnings = [
             "the integers of ids are rounded to 24 bits",
             "the array wrong of 1 x 2 values is left out",
@@ -258,7 +258,7 @@ fn bytes_in_tuples_of_three_are_colors() {
         ];
         let loaded = read(&file(form, "4.0", &parts)).unwrap();
         let colors = [[1, 2, 3, 255], [4, 5, 6, 255], [7, 8, 255, 255]];
-        assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec()));
+        assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec().into()));
         assert!(loaded.scene.attributes.scalars.is_empty());
     }
 }
@@ -275,7 +275,7 @@ fn colors_that_are_none_are_told() {
     ];
     let loaded = read(&file(Form::Text, "4.0", &parts)).unwrap();
     let colors = [[255; 4], [255, 128, 0, 255], [0, 255, 51, 255]];
-    assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec()));
+    assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec().into()));
     let warnings = [
         "1 colors are not a number; they are white",
         "1 colors lie outside of 0..1 and were clamped",
@@ -306,7 +306,7 @@ fn rows_that_cannot_be_used_leave_all_columns() {
         let bytes = file(form, "1.0", &parts);
         let loaded = ReadOptions::default().read_bytes("a.vtk", &bytes).unwrap();
         loaded.scene.validate().unwrap();
-        assert_eq!(loaded.scene.attributes.ids, Some(vec![0, 3]));
+        assert_eq!(loaded.scene.attributes.ids, Some([0, 3].into()));
         assert_eq!(scalar(&loaded, "before"), [0.0, 3.0]);
         assert_eq!(scalar(&loaded, "after"), [0.0, 3.0]);
         let problems: Vec<Problem> = loaded.report.skipped.iter().map(|s| s.problem).collect();

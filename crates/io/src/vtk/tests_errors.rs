@@ -18,7 +18,7 @@ fn odd_texts_are_read() {
     );
     let loaded = read(&text).unwrap();
     assert_eq!(loaded.scene.records.len(), 2);
-    let values = |name| loaded.scene.scalar(name).unwrap().values.clone();
+    let values = |name| loaded.scene.scalar(name).unwrap().values.to_vec();
     assert!(values("s")[0] == 6.0 && values("s")[1].is_nan());
     assert_eq!(values("last"), [1.0, 0.0]);
     assert!(values("n_x")[1].is_nan());
@@ -40,7 +40,7 @@ fn binary_texts_and_bits_are_passed_over() {
     file.extend(b"last 1 9 char\n");
     file.extend([5; 9]);
     let loaded = ReadOptions::default().radius(1.0).read_bytes("a.vtk", &file).unwrap();
-    let values = |name| loaded.scene.scalar(name).unwrap().values.clone();
+    let values = |name| loaded.scene.scalar(name).unwrap().values.to_vec();
     assert_eq!(values("bits"), [1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
     assert_eq!(values("last"), [5.0; 9]);
 }
@@ -163,7 +163,7 @@ fn the_fluid_is_read() {
     let path = std::path::Path::new(&folder).join("sph_hilbert_18856.vtk");
     let loaded = ReadOptions::default().read(path).unwrap();
     assert_eq!(loaded.scene.records.len(), 18_856);
-    let mut ids = loaded.scene.scalar("id").unwrap().values.clone();
+    let mut ids = loaded.scene.scalar("id").unwrap().values.to_vec();
     ids.sort_by(f32::total_cmp);
     let expected: Vec<f32> = (0..18_856_u16).map(f32::from).collect();
     assert_eq!(ids, expected);

@@ -10,7 +10,7 @@ use crate::{
     table::{Role, Table, Values, is_kind},
     text::{self, Lines, columns, number, whole},
 };
-use puncta_core::Scene;
+use puncta_core::{Column, Scene};
 
 /// What a file starts with.
 const FIRST: &str = "the first line must be the number of atoms, or a row of coordinates";
@@ -324,7 +324,7 @@ impl<'o> Rows<'o> {
 /// Moves the row that was added last, of `count` rows, to the start, unless it was skipped.
 fn put_last_first(scene: &mut Scene, count: u64) {
     let attributes = &mut scene.attributes;
-    if let Some(ids) = &mut attributes.ids {
+    if let Some(ids) = attributes.ids.as_mut().map(Column::to_mut) {
         for id in ids.iter_mut() {
             *id = if u64::from(*id) + 1 == count { 0 } else { *id + 1 };
         }
@@ -333,11 +333,11 @@ fn put_last_first(scene: &mut Scene, count: u64) {
         }
         ids.rotate_right(1);
     }
-    scene.records.rotate_right(1);
+    scene.records.to_mut().rotate_right(1);
     if let Some(elements) = &mut attributes.elements {
-        elements.rotate_right(1);
+        elements.to_mut().rotate_right(1);
     }
     for scalar in &mut attributes.scalars {
-        scalar.values.rotate_right(1);
+        scalar.values.to_mut().rotate_right(1);
     }
 }

@@ -26,7 +26,7 @@ fn radii(loaded: &Loaded) -> Vec<f32> {
 }
 
 fn scalar(loaded: &Loaded, name: &str) -> Vec<f32> {
-    loaded.scene.scalar(name).unwrap().values.clone()
+    loaded.scene.scalar(name).unwrap().values.to_vec()
 }
 
 const TWO: &str = "2\nfirst\nO 0 0 0\nH 1 0 0\n1\nsecond\nC 5 0 0\n";
@@ -37,7 +37,7 @@ mod plain {
     #[test]
     fn atoms_have_elements_and_their_radii() {
         let loaded = read("4\n\n  CA  0 0 0\r\n13C\t1 -2.5e0 3\nh2 2 0 0\n92 3 0 0");
-        assert_eq!(loaded.scene.attributes.elements, Some(vec![20, 6, 1, 92]));
+        assert_eq!(loaded.scene.attributes.elements, Some([20, 6, 1, 92].into()));
         assert_eq!(radii(&loaded), [2.31, 1.7, 1.2, 2.71]);
         assert_eq!(loaded.scene.position(1), DVec3::new(1.0, -2.5, 3.0));
         assert_eq!(loaded.report, Default::default());
@@ -56,7 +56,7 @@ mod plain {
     #[test]
     fn a_name_that_is_no_element_among_others_is_told() {
         let loaded = read("3\n\nC 0 0 0\nQ 2 0 0\nX 3 0 0");
-        assert_eq!(loaded.scene.attributes.elements, Some(vec![6, 0, 0]));
+        assert_eq!(loaded.scene.attributes.elements, Some([6, 0, 0].into()));
         assert_eq!(radii(&loaded), [1.7; 3]);
         let warning =
             "the element of 2 atoms is not known and was given the radius 1.7; the first: line 4";
@@ -90,7 +90,7 @@ mod plain {
     fn lines_that_cannot_be_used_are_counted() {
         let loaded = read("7\n\nC\nC 0 0 0\nC 1 0\n\nC 2 0 0 0\nC 3 x.5 0\nC 4 0 nan\n\n");
         assert_eq!(xs(&loaded), [0.0]);
-        assert_eq!(loaded.scene.attributes.ids, Some(vec![1]));
+        assert_eq!(loaded.scene.attributes.ids, Some([1].into()));
         let skipped: Vec<_> = loaded
             .report
             .skipped
@@ -233,7 +233,7 @@ mod frames {
             assert!(loaded.report.warnings.iter().any(|found| found == warning), "{text}");
         }
         let three = read("3\nC 4 0 0 1\nO 5 0 0 2\nN 6 0 0 3\n");
-        assert_eq!(three.scene.attributes.elements, Some(vec![6, 8, 7]));
+        assert_eq!(three.scene.attributes.elements, Some([6, 8, 7].into()));
         assert_eq!(radii(&three), [1.7, 1.52, 1.55]);
         assert_eq!(scalar(&three, "column_5"), [1.0, 2.0, 3.0]);
     }
@@ -243,12 +243,12 @@ mod frames {
         let loaded = read("3\nC 4 0 0\nO 5 0 0\nN 6 nan 0\n");
         assert_eq!(
             (xs(&loaded), &loaded.scene.attributes.ids),
-            (vec![4.0, 5.0], &Some(vec![0, 1]))
+            (vec![4.0, 5.0], &Some([0, 1].into()))
         );
         let loaded = read("3\nC 4 0 1e999\nO 5 0 0\nN 6 0 0\n");
         assert_eq!(
             (xs(&loaded), &loaded.scene.attributes.ids),
-            (vec![5.0, 6.0], &Some(vec![1, 2]))
+            (vec![5.0, 6.0], &Some([1, 2].into()))
         );
     }
 
@@ -282,7 +282,7 @@ mod points {
     fn rows_need_no_count() {
         let loaded = read("# x y z\n0.5 0 0\n\n// more\n1 2 3\n4 5\n6 7 8\n");
         assert_eq!(xs(&loaded), [0.5, 1.0, 6.0]);
-        assert_eq!(loaded.scene.attributes.ids, Some(vec![0, 1, 3]));
+        assert_eq!(loaded.scene.attributes.ids, Some([0, 1, 3].into()));
         assert_eq!(loaded.report.skipped[0].value, "\"4 5\"");
     }
 
@@ -297,7 +297,7 @@ mod points {
     #[test]
     fn rows_may_have_names() {
         let loaded = read("C 1 2 3\nO 4 5 6\n");
-        assert_eq!(loaded.scene.attributes.elements, Some(vec![6, 8]));
+        assert_eq!(loaded.scene.attributes.elements, Some([6, 8].into()));
     }
 
     #[test]

@@ -14,13 +14,14 @@ use std::{
 /// where one is not opaque. The names of scalars are changed where they could not be read again.
 pub(crate) fn write(out: &mut dyn Write, scene: &Scene<Sphere>) -> io::Result<()> {
     let attributes = &scene.attributes;
-    let colors = attributes.colors.as_deref();
+    let (colors, elements) = (attributes.colors.as_deref(), attributes.elements.as_deref());
+    let scalars: Vec<&[f32]> = attributes.scalars.iter().map(|s| s.values.as_slice()).collect();
     let has_alpha = colors.is_some_and(|colors| colors.iter().any(|color| color[3] < 255));
     let channels = if has_alpha { 4 } else { 3 };
     writeln!(out, "{}", scene.records.len())?;
     write_header(out, scene, channels)?;
     for (index, record) in scene.records.iter().enumerate() {
-        if let Some(element) = attributes.elements.as_ref().and_then(|column| column.get(index)) {
+        if let Some(element) = elements.and_then(|column| column.get(index)) {
             write!(out, "{} ", elements::symbol(*element).unwrap_or("X"))?;
         }
         let [x, y, z] = scene.position(index).to_array();
@@ -31,8 +32,8 @@ pub(crate) fn write(out: &mut dyn Write, scene: &Scene<Sphere>) -> io::Result<()
                 write!(out, " {:?}", f32::from(*channel) / 255.0)?;
             }
         }
-        for scalar in &attributes.scalars {
-            write!(out, " {:?}", scalar.values.get(index).copied().unwrap_or(f32::NAN))?;
+        for values in &scalars {
+            write!(out, " {:?}", values.get(index).copied().unwrap_or(f32::NAN))?;
         }
         out.write_all(b"\n")?;
     }
@@ -152,7 +153,7 @@ mod tests {
             radii.map(|radius| Sphere::new([radius / 7.0, -radius, 0.0], radius)).to_vec();
         let mut scene = Scene::new(records);
         let values = vec![f32::MIN_POSITIVE / 4.0, -0.0, f32::INFINITY, 8.5e37, 0.1, f32::EPSILON];
-        scene.attributes.scalars.push(Scalar { name: "s".into(), values });
+        scene.attributes.scalars.push(Scalar { name: "s".into(), values: values.into() });
         let (_, again) = rewrite(&scene);
         let found: Vec<f32> = again.scene.records.iter().map(|record| record.radius).collect();
         assert_eq!(found, radii);
@@ -179,9 +180,9 @@ mod tests {
         let names = ["a b", "a:b", "pos", "Z", "", "a_b", "\"x=1\"", "Radius", "c_1[2]", "größe"];
         for (index, name) in (0_u8..).zip(names) {
             let values = vec![f32::from(index)];
-            scene.attributes.scalars.push(Scalar { name: name.into(), values });
+            scene.attributes.scalars.push(Scalar { name: name.into(), values: values.into() });
         }
-        scene.attributes.elements = Some(vec![8]);
+        scene.attributes.elements = Some(vec![8].into());
         let (_, again) = rewrite(&scene);
         let found: Vec<_> =
             again.scene.attributes.scalars.iter().map(|s| (s.name.as_str(), s.values[0])).collect();
@@ -191,7 +192,7 @@ mod tests {
         ];
         let expected: Vec<_> = safe.into_iter().zip((0_u8..).map(f32::from)).collect();
         assert_eq!(found, expected);
-        assert_eq!(again.scene.attributes.elements, Some(vec![8]));
+        assert_eq!(again.scene.attributes.elements, Some([8].into()));
     }
 
     #[test]

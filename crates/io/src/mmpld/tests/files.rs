@@ -55,9 +55,9 @@ fn all_versions_and_types_are_read() {
                 );
                 assert_eq!(sphere.radius, radius, "{case}");
             }
-            assert_eq!(scene.attributes.colors, rgba.map(|rgba| vec![rgba; 3]), "{case}");
+            assert_eq!(scene.attributes.colors, rgba.map(|rgba| [rgba; 3].into()), "{case}");
             let scalar = scene.scalar("intensity").map(|scalar| scalar.values.clone());
-            assert_eq!(scalar, intensity.map(|intensity| vec![intensity; 3]), "{case}");
+            assert_eq!(scalar, intensity.map(|intensity| [intensity; 3].into()), "{case}");
             assert_eq!(loaded.report.warnings.len(), usize::from(vertex_type == 3), "{case}");
             assert_eq!(loaded.report.skipped, []);
         }
@@ -74,7 +74,7 @@ fn lists_are_joined() {
     let spheres = spheres.map(|(center, radius)| Sphere::new(center, radius));
     assert_eq!(loaded.scene.records, spheres);
     let global = [10, 20, 30, 255];
-    assert_eq!(loaded.scene.attributes.colors, Some(vec![[255; 4], global, global]));
+    assert_eq!(loaded.scene.attributes.colors, Some([[255; 4], global, global].into()));
     let intensities = &loaded.scene.scalar("intensity").unwrap().values;
     assert!(intensities[0] == 5.0 && intensities[1].is_nan() && intensities[2].is_nan());
     assert_eq!(loaded.report, Default::default());

@@ -143,7 +143,7 @@ fn colors_that_are_none_are_told() {
     let list = list(102, (1, 4), &[f32::NAN, 2.0, -1.0, 1.0].map(particle));
     let loaded = read(&file(102, &[frame(102, &[list])]));
     let colors = [[255; 4], [255, 128, 128, 255], [0, 128, 128, 255], [255, 128, 128, 255]];
-    assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec()));
+    assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec().into()));
     let warnings = [
         "1 colors are not a number; they are white",
         "2 colors lie outside of 0..1 and were clamped",
@@ -160,7 +160,7 @@ fn particles_that_cannot_be_used_are_counted() {
     let bytes = file(100, &[frame(100, &[zero, list(100, (2, 0), &own), far])]);
     let loaded = read(&bytes);
     assert_eq!(xs(&loaded), [4.0, 5.0]);
-    assert_eq!(loaded.scene.attributes.ids, Some(vec![3, 5]));
+    assert_eq!(loaded.scene.attributes.ids, Some([3, 5].into()));
     let [radius, position] = &loaded.report.skipped[..] else { panic!("two problems") };
     assert_eq!((radius.problem, radius.count, &*radius.value), (Problem::Radius, 3, "0"));
     assert_eq!((position.problem, position.count), (Problem::Position, 1));
@@ -178,7 +178,7 @@ fn particles_without_positions_are_left_out() {
     let bytes = file(102, &[frame(102, &lists)]);
     let loaded = read(&bytes);
     assert_eq!(xs(&loaded), [0.0, 1.0]);
-    assert_eq!(loaded.scene.attributes.ids, Some(vec![0, 8]));
+    assert_eq!(loaded.scene.attributes.ids, Some([0, 8].into()));
     let [skipped] = &loaded.report.skipped[..] else { panic!("one problem") };
     let found = (skipped.problem, skipped.count, skipped.first, &*skipped.value);
     assert_eq!(found, (Problem::Position, 7, crate::Place::Byte(at), "none"));

@@ -18,7 +18,7 @@ fn scene(records: u16, radii: u16) -> Scene {
         let x = f32::from(i);
         Sphere::new([0.1 * x, (1.7 * x).sin(), 3.0 - 0.3 * x], 0.1 + 0.7 * f32::from(i % radii))
     };
-    Scene::new((0..records).map(sphere).collect())
+    Scene::new((0..records).map(sphere).collect::<Vec<_>>())
 }
 
 fn intensities(records: u16) -> Scalar {
@@ -50,7 +50,7 @@ fn single_positions_come_back_as_they_were() {
         let mut scene = scene(1000, 1000);
         match attributes {
             0 => {}
-            1 => scene.attributes.colors = Some(colors(1000)),
+            1 => scene.attributes.colors = Some(colors(1000).into()),
             _ => scene.attributes.scalars.push(intensities(1000)),
         }
         let bytes = written(&scene);
@@ -78,7 +78,7 @@ fn double_positions_come_back_with_up_to_256_radii() {
         scene.origin = DVec3::new(1e7, -5e6, 64.0);
         match attributes {
             0 => {}
-            1 => scene.attributes.colors = Some(colors(1000)),
+            1 => scene.attributes.colors = Some(colors(1000).into()),
             _ => scene.attributes.scalars.push(intensities(1000)),
         }
         let bytes = written(&scene);
@@ -124,7 +124,7 @@ fn boxes_have_an_extent_and_hold_everything() {
     assert_eq!(floats(&bytes, 12), [1.0, 1.5, 3.0, 4.0, 2.5, 3.5]);
     assert_eq!(floats(&bytes, 36), [0.5, 1.0, 2.5, 4.5, 3.0, 4.0]);
     flat.origin = DVec3::splat(1e7 + 0.1);
-    flat.records.push(Sphere::new([f32::NAN, f32::INFINITY, 0.0], f32::NAN));
+    flat.records.to_mut().push(Sphere::new([f32::NAN, f32::INFINITY, 0.0], f32::NAN));
     let bytes = written(&flat);
     let (bounds, clip) = (floats(&bytes, 12), floats(&bytes, 36));
     for axis in 0..3 {
@@ -170,7 +170,7 @@ fn a_file_that_was_not_finished_is_marked() {
 #[test]
 fn columns_of_another_length_are_refused() {
     let mut scene = scene(9, 9);
-    scene.attributes.colors = Some(colors(8));
+    scene.attributes.colors = Some(colors(8).into());
     let error = write(&mut Cursor::new(Vec::new()), &scene).unwrap_err().in_file("b.mmpld");
     assert_eq!(error.to_string(), "b.mmpld: attribute colors has 8 values for 9 records");
 }

@@ -165,7 +165,7 @@ fn elements_before_the_vertices_must_be_there() {
 fn rows_that_cannot_be_used_are_counted() {
     let bytes = text("7", "0 0 0\n1 0\n2 0 0 0\n3 x 0\n4 nan 0\n5 0 0\n6 0 1.2.3\n");
     let loaded = read(&bytes);
-    assert_eq!(loaded.scene.attributes.ids, Some(vec![0, 5]));
+    assert_eq!(loaded.scene.attributes.ids, Some([0, 5].into()));
     let skipped: Vec<_> =
         loaded.report.skipped.iter().map(|s| (s.problem, s.count, &*s.value)).collect();
     let wanted = [

@@ -76,8 +76,8 @@ fn a_text_with_everything_is_read() {
     assert_eq!(positions(&loaded.scene), expected);
     assert_eq!(loaded.scene.records.iter().map(|r| r.radius).collect::<Vec<_>>(), [0.5, 0.25, 2.0]);
     let colors = [[10, 20, 30, 255], [1, 2, 3, 255], [255; 4]];
-    assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec()));
-    assert_eq!(loaded.scene.attributes.elements, Some(vec![6, 8, 0]));
+    assert_eq!(loaded.scene.attributes.colors, Some(colors.to_vec().into()));
+    assert_eq!(loaded.scene.attributes.elements, Some([6, 8, 0].into()));
     assert_eq!(loaded.scene.attributes.scalars.len(), 2);
     let distance = values(&loaded.scene, "distance[<0.1]");
     assert!(distance[0] == 1e-3 && distance[1].is_nan() && distance[2] == 0.0);
@@ -185,7 +185,7 @@ fn an_element_is_a_byte() {
         "property uchar element",
     ];
     let loaded = read(&join(&header("ascii", &lines), b"0 0 0 6\n1 0 0 256\n2 0 0 1.5\n"));
-    assert_eq!(loaded.scene.attributes.elements, Some(vec![6, 0, 0]));
+    assert_eq!(loaded.scene.attributes.elements, Some([6, 0, 0].into()));
     let warning = "2 atomic numbers are not 0 to 255; they were taken for 0".to_owned();
     assert!(loaded.report.warnings.contains(&warning));
     let lines = lines.map(|line| line.replace("uchar", "int"));

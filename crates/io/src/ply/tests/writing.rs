@@ -20,7 +20,7 @@ fn scene() -> Scene {
         let x = f32::from(i);
         Sphere::new([0.1 * x, (1.7 * x).sin(), 3.0 - 0.3 * x], 0.1 + 0.7 * x)
     };
-    Scene::new((0..1000).map(sphere).collect())
+    Scene::new((0..1000).map(sphere).collect::<Vec<_>>())
 }
 
 fn with_attributes(mut scene: Scene) -> Scene {
@@ -47,7 +47,7 @@ fn scenes_come_back_as_they_were() {
 fn numbers_keep_their_bits() {
     let mut scene = Scene::new(vec![Sphere::new([-0.0, f32::MIN_POSITIVE, 1e-45], 1e30); 5]);
     let values = vec![f32::NAN, f32::INFINITY, -0.0, 1e-45, f32::MAX];
-    scene.attributes.scalars.push(Scalar { name: "s".into(), values });
+    scene.attributes.scalars.push(Scalar { name: "s".into(), values: values.into() });
     let loaded = read(&written(&scene)).scene;
     let bits = |scene: &Scene| {
         scene.scalar("s").unwrap().values.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
@@ -91,9 +91,9 @@ fn names_of_scalars_are_made_safe() {
     ];
     for (value, name) in (0_u8..).zip(names) {
         let values = vec![f32::from(value)];
-        scene.attributes.scalars.push(Scalar { name: name.into(), values });
+        scene.attributes.scalars.push(Scalar { name: name.into(), values: values.into() });
     }
-    scene.attributes.elements = Some(vec![6]);
+    scene.attributes.elements = Some(vec![6].into());
     let loaded = read(&written(&scene)).scene;
     let safe: Vec<_> = loaded.attributes.scalars.iter().map(|scalar| &*scalar.name).collect();
     let wanted = [
@@ -112,7 +112,7 @@ fn names_of_scalars_are_made_safe() {
     ];
     assert_eq!(safe, wanted);
     assert!((0_u8..).zip(&loaded.attributes.scalars).all(|(i, s)| s.values == [f32::from(i)]));
-    assert_eq!((loaded.attributes.colors, loaded.attributes.elements), (None, Some(vec![6])));
+    assert_eq!((loaded.attributes.colors, loaded.attributes.elements), (None, Some([6].into())));
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn another_reader_reads_the_same() {
 #[test]
 fn columns_of_another_length_are_refused() {
     let mut scene = with_attributes(scene());
-    scene.attributes.scalars[0].values.pop();
+    scene.attributes.scalars[0].values.to_mut().pop();
     let error = write(&mut Vec::new(), &scene).unwrap_err().in_file("b.ply");
     assert_eq!(error.to_string(), "b.ply: attribute speed has 999 values for 1000 records");
 }

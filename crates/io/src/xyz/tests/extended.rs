@@ -9,9 +9,9 @@ const TEXT: &str = "2\nLattice=\"9 0 0 0 9 0 0 0 9\" Properties=id:I:1:pos:R:3:s
 #[test]
 fn columns_are_what_the_comment_says() {
     let loaded = read(TEXT);
-    assert_eq!(loaded.scene.attributes.elements, Some(vec![26, 0]));
+    assert_eq!(loaded.scene.attributes.elements, Some([26, 0].into()));
     assert_eq!(radii(&loaded), [0.5, 0.25]);
-    let colors = Some(vec![[255, 128, 0, 255], [0, 64, 255, 255]]);
+    let colors = Some([[255, 128, 0, 255], [0, 64, 255, 255]].into());
     assert_eq!(loaded.scene.attributes.colors, colors);
     assert_eq!(scalar(&loaded, "velo_y"), [0.2, 0.5]);
     assert_eq!(scalar(&loaded, "id"), [7.0, 8.0]);
@@ -22,7 +22,7 @@ fn columns_are_what_the_comment_says() {
 #[test]
 fn atomic_numbers_are_elements() {
     let loaded = read("2\nProperties=Z:I:1:pos:R:3\n8 0 0 0\n1 1 0 0\n");
-    assert_eq!(loaded.scene.attributes.elements, Some(vec![8, 1]));
+    assert_eq!(loaded.scene.attributes.elements, Some([8, 1].into()));
     assert_eq!(radii(&loaded), [1.52, 1.2]);
 }
 
@@ -30,11 +30,11 @@ fn atomic_numbers_are_elements() {
 fn colors_out_of_range_are_told() {
     let text = "2\nProperties=pos:R:3:radius:R:1:color:I:4\n0 0 0 1 300 0 -1 9\n1 0 0 1 1 2 3 4\n";
     let loaded = read(text);
-    assert_eq!(loaded.scene.attributes.colors, Some(vec![[255, 0, 0, 9], [1, 2, 3, 4]]));
+    assert_eq!(loaded.scene.attributes.colors, Some([[255, 0, 0, 9], [1, 2, 3, 4]].into()));
     let clamped = "1 colors lie outside of 0..1 and were clamped";
     assert_eq!(loaded.report.warnings, [clamped]);
     let loaded = read(&TEXT.replace("0.25 1 F", "nan 1 F").replace("1 0.5 0 T", "1 -1 0 T"));
-    assert_eq!(loaded.scene.attributes.colors, Some(vec![[255, 0, 0, 255], [255; 4]]));
+    assert_eq!(loaded.scene.attributes.colors, Some([[255, 0, 0, 255], [255; 4]].into()));
     assert_eq!(loaded.report.skipped, []);
     assert_eq!(loaded.report.warnings[0], "1 colors are not a number; they are white");
     assert_eq!(loaded.report.warnings[1], clamped);

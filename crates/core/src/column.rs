@@ -1,0 +1,373 @@
+/*!
+Columns: values in a row, one for each record, wherever they lie.
+
+A scene that was read owns its values. A scene that is larger than memory, or that another program
+has built, must not be copied to be drawn: its columns are *shared* with whoever holds the values,
+such as a mapped file, an `Arc`, or a buffer of a simulation. Both read as a slice. To change values
+one asks for a `Vec`, which is there for an owned column and is copied for a shared one, just as
+with [`std::borrow::Cow`].
+*/
+
+use std::{fmt, ops::Deref, slice, sync::Arc};
+
+/// Values in a row, one for each record: owned, or shared with whoever holds them.
+///
+/// A column reads as a slice. Taking the slice of a shared column is a virtual call, so a loop over
+/// many values takes it once, before it starts, and does not index the column at each turn.
+///
+/// # Examples
+///
+/// A scene over records that somebody else holds; nothing is copied:
+///
+/// ```
+/// use puncta_core::{Scene, Sphere};
+/// use std::sync::Arc;
+///
+/// let held: Arc<[Sphere]> = Arc::new([Sphere::new([0.0; 3], 1.0), Sphere::new([2.0; 3], 0.5)]);
+/// let mut scene = Scene::new(Arc::clone(&held));
+/// assert!(scene.records.is_shared());
+/// assert!(std::ptr::eq(&scene.records[0], &held[0]));
+///
+/// // To change a record copies them all, once. Those of the holder stay as they are.
+/// scene.records.to_mut()[0].radius = 3.0;
+/// scene.records.extend([Sphere::default()]);
+/// assert_eq!(scene.records.len(), 3);
+/// assert_eq!(held[0].radius, 1.0);
+/// ```
+///
+/// [`Column::shared`] takes any type that lends out a slice, such as a view of a mapped file.
+pub struct Column<T>(Storage<T>);
+
+/// Where values lie.
+enum Storage<T> {
+    Owned(Vec<T>),
+    Shared(Arc<dyn AsRef<[T]> + Send + Sync>),
+}
+
+impl<T> Column<T> {
+    /// A column without values.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self(Storage::Owned(Vec::new()))
+    }
+
+    /// The values that `holder` lends out. They are not copied; `holder` is dropped with the last
+    /// clone of the column.
+    ///
+    /// The holder must lend the same values each time. Memory stays safe if it does not, but what
+    /// is drawn is of no use then, and where values are gone that were counted before, indexing
+    /// panics. [`Scene::validate`](crate::Scene::validate) tells of a length that is wrong by then.
+    ///
+    /// # Examples
+    ///
+    /// One of several runs of values in a buffer, such as a file that is mapped to memory:
+    ///
+    /// ```
+    /// use puncta_core::Column;
+    /// use std::{ops::Range, sync::Arc};
+    ///
+    /// struct Run {
+    ///     buffer: Arc<Vec<f32>>,
+    ///     range: Range<usize>,
+    /// }
+    ///
+    /// impl AsRef<[f32]> for Run {
+    ///     fn as_ref(&self) -> &[f32] {
+    ///         &self.buffer[self.range.clone()]
+    ///     }
+    /// }
+    ///
+    /// let buffer = Arc::new(vec![0.5, 1.5, 2.5, 3.5]);
+    /// let last = Column::shared(Run { buffer, range: 2..4 });
+    /// assert_eq!(last, [2.5, 3.5]);
+    /// ```
+    #[must_use]
+    pub fn shared(holder: impl AsRef<[T]> + Send + Sync + 'static) -> Self {
+        Self(Storage::Shared(Arc::new(holder)))
+    }
+
+    /// Whether somebody else holds the values, so that changing them copies them.
+    #[must_use]
+    pub const fn is_shared(&self) -> bool {
+        matches!(self.0, Storage::Shared(_))
+    }
+
+    /// The values. For a shared column this is a virtual call.
+    #[must_use]
+    #[inline]
+    pub fn as_slice(&self) -> &[T] {
+        match &self.0 {
+            Storage::Owned(values) => values,
+            Storage::Shared(holder) => (**holder).as_ref(),
+        }
+    }
+}
+
+impl<T: Clone> Column<T> {
+    /// The values, to change them. A shared column copies them first and owns them from then on;
+    /// other clones of it still share.
+    ///
+    /// Loops take the `Vec` once, before they start.
+    #[inline]
+    pub fn to_mut(&mut self) -> &mut Vec<T> {
+        if let Storage::Shared(holder) = &self.0 {
+            self.0 = Storage::Owned((**holder).as_ref().to_vec());
+        }
+        match &mut self.0 {
+            Storage::Owned(values) => values,
+            Storage::Shared(_) => unreachable!("it was copied above"),
+        }
+    }
+
+    /// The values. Those of a shared column are copied.
+    #[must_use]
+    pub fn into_vec(self) -> Vec<T> {
+        match self.0 {
+            Storage::Owned(values) => values,
+            Storage::Shared(holder) => (*holder).as_ref().to_vec(),
+        }
+    }
+}
+
+impl<T> Deref for Column<T> {
+    type Target = [T];
+
+    #[inline]
+    fn deref(&self) -> &[T] {
+        self.as_slice()
+    }
+}
+
+impl<T> AsRef<[T]> for Column<T> {
+    fn as_ref(&self) -> &[T] {
+        self.as_slice()
+    }
+}
+
+impl<'a, T> IntoIterator for &'a Column<T> {
+    type Item = &'a T;
+    type IntoIter = slice::Iter<'a, T>;
+
+    fn into_iter(self) -> slice::Iter<'a, T> {
+        self.as_slice().iter()
+    }
+}
+
+impl<T> Default for Column<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A clone of a shared column shares, too; one of an owned column is a copy.
+impl<T: Clone> Clone for Column<T> {
+    fn clone(&self) -> Self {
+        Self(match &self.0 {
+            Storage::Owned(values) => Storage::Owned(values.clone()),
+            Storage::Shared(holder) => Storage::Shared(Arc::clone(holder)),
+        })
+    }
+}
+
+impl<T: fmt::Debug> fmt::Debug for Column<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.as_slice().fmt(f)
+    }
+}
+
+impl<T> From<Vec<T>> for Column<T> {
+    fn from(values: Vec<T>) -> Self {
+        Self(Storage::Owned(values))
+    }
+}
+
+impl<T, const N: usize> From<[T; N]> for Column<T> {
+    fn from(values: [T; N]) -> Self {
+        Vec::from(values).into()
+    }
+}
+
+/// The values are shared, not copied.
+impl<T: Send + Sync + 'static> From<Arc<[T]>> for Column<T> {
+    fn from(values: Arc<[T]>) -> Self {
+        Self::shared(values)
+    }
+}
+
+impl<T> FromIterator<T> for Column<T> {
+    fn from_iter<I: IntoIterator<Item = T>>(values: I) -> Self {
+        Vec::from_iter(values).into()
+    }
+}
+
+/// As [`Column::to_mut`], this copies the values of a shared column first.
+impl<T: Clone> Extend<T> for Column<T> {
+    fn extend<I: IntoIterator<Item = T>>(&mut self, values: I) {
+        self.to_mut().extend(values);
+    }
+}
+
+/// Columns are equal when their values are, whoever holds these.
+impl<T: PartialEq> PartialEq for Column<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.as_slice() == other.as_slice()
+    }
+}
+
+impl<T: Eq> Eq for Column<T> {}
+
+impl<T: PartialEq> PartialEq<[T]> for Column<T> {
+    fn eq(&self, other: &[T]) -> bool {
+        self.as_slice() == other
+    }
+}
+
+impl<T: PartialEq> PartialEq<Vec<T>> for Column<T> {
+    fn eq(&self, other: &Vec<T>) -> bool {
+        self.as_slice() == other
+    }
+}
+
+impl<T: PartialEq, const N: usize> PartialEq<[T; N]> for Column<T> {
+    fn eq(&self, other: &[T; N]) -> bool {
+        self.as_slice() == other
+    }
+}
+
+impl<T: PartialEq> PartialEq<Column<T>> for Vec<T> {
+    fn eq(&self, other: &Column<T>) -> bool {
+        self == other.as_slice()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Error, Scene, Sphere};
+    use proptest::prelude::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// What can be done with a column.
+    #[derive(Clone, Debug)]
+    enum Action {
+        Push(u8),
+        Extend(Vec<u8>),
+        Truncate(usize),
+        Reverse,
+    }
+
+    fn action() -> impl Strategy<Value = Action> {
+        prop_oneof![
+            any::<u8>().prop_map(Action::Push),
+            prop::collection::vec(any::<u8>(), 0..9).prop_map(Action::Extend),
+            (0..9_usize).prop_map(Action::Truncate),
+            Just(Action::Reverse),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn columns_do_what_vectors_do(
+            start: Vec<u8>,
+            actions in prop::collection::vec(action(), 0..9),
+        ) {
+            let held: Arc<[u8]> = start.clone().into();
+            let shared = Column::from(Arc::clone(&held));
+            let mut columns = [Column::from(start.clone()), shared.clone()];
+            let mut twin = start.clone();
+            for action in actions {
+                for values in columns.iter_mut().map(Column::to_mut).chain([&mut twin]) {
+                    match &action {
+                        Action::Push(value) => values.push(*value),
+                        Action::Extend(_) => {}
+                        Action::Truncate(length) => values.truncate(*length),
+                        Action::Reverse => values.reverse(),
+                    }
+                }
+                if let Action::Extend(more) = action {
+                    columns.iter_mut().for_each(|column| column.extend(more.clone()));
+                    twin.extend(more);
+                }
+                prop_assert_eq!(&columns[0], &twin);
+                prop_assert_eq!(&columns[1], &columns[0]);
+            }
+            prop_assert_eq!(shared, start);
+            for column in columns {
+                prop_assert_eq!(format!("{column:?}"), format!("{twin:?}"));
+                prop_assert!(twin.iter().eq(&column));
+                prop_assert_eq!(column.into_vec(), twin.clone());
+            }
+        }
+    }
+
+    #[test]
+    fn owned_values_move_and_are_not_copied() {
+        let values = vec![1, 2, 3];
+        let place = values.as_ptr();
+        let mut column = Column::from(values);
+        assert!(!column.is_shared());
+        column.to_mut().swap(0, 2);
+        assert_eq!(column.as_ptr(), place);
+        let values = column.into_vec();
+        assert_eq!(values.as_ptr(), place);
+    }
+
+    #[test]
+    fn shared_values_stay_where_they_are_until_they_change() {
+        let held: Arc<[u32]> = Arc::new([4, 5, 6]);
+        let column = Column::from(Arc::clone(&held));
+        let mut changed = column.clone();
+        assert!(changed.is_shared());
+        assert_eq!(changed.as_ptr(), held.as_ptr());
+        changed.to_mut()[0] = 7;
+        let place = changed.as_ptr();
+        changed.to_mut()[1] = 8;
+        assert_eq!((changed.as_ptr(), changed.is_shared()), (place, false));
+        assert_eq!(changed, [7, 8, 6]);
+        assert_eq!(column.as_ptr(), held.as_ptr());
+        assert_eq!(*held, [4, 5, 6]);
+    }
+
+    #[test]
+    fn a_holder_goes_with_its_last_column() {
+        let held: Arc<[u8]> = Arc::new([1]);
+        let one = Column::from(Arc::clone(&held));
+        let mut other = one.clone();
+        drop(one);
+        assert_eq!(Arc::strong_count(&held), 2);
+        other.to_mut();
+        assert_eq!(Arc::strong_count(&held), 1);
+    }
+
+    #[test]
+    fn equality_goes_by_values() {
+        let column = Column::from([1.0, f32::NAN]);
+        assert_ne!(column, column.clone());
+        let column = Column::from([1.0, 2.0]);
+        assert_eq!(column, Column::shared(vec![1.0, 2.0]));
+        assert_eq!(vec![1.0, 2.0], column);
+        assert_eq!(column, *[1.0, 2.0].as_slice());
+        assert_ne!(column, [1.0]);
+        assert_eq!(Column::<u8>::default(), []);
+    }
+
+    /// Lends out one value less each time.
+    struct Shrinking(Vec<u8>, AtomicUsize);
+
+    impl AsRef<[u8]> for Shrinking {
+        fn as_ref(&self) -> &[u8] {
+            let gone = self.1.fetch_add(1, Ordering::Relaxed);
+            &self.0[..self.0.len().saturating_sub(gone)]
+        }
+    }
+
+    #[test]
+    fn a_holder_that_loses_values_is_told() {
+        let mut scene = Scene::new(vec![Sphere::default(); 3]);
+        let holder = Shrinking(vec![6; 3], AtomicUsize::new(0));
+        scene.attributes.elements = Some(Column::shared(holder));
+        assert_eq!(scene.validate(), Ok(()));
+        let error = Error::AttributeLength { name: "elements".into(), values: 2, records: 3 };
+        assert_eq!(scene.validate(), Err(error));
+    }
+}
