@@ -20,8 +20,11 @@ mod builder;
 mod color;
 pub mod elements;
 mod error;
+mod feed;
+mod file_source;
 mod format;
 mod gzip;
+mod hash;
 mod input;
 mod lammps;
 mod las;
@@ -43,6 +46,7 @@ mod xyz;
 pub use crate::{
     builder::{Report, Skipped},
     error::{Error, ErrorKind, Place, Problem},
+    file_source::FileSource,
     format::Format,
     options::{Loaded, ReadOptions, Scalars},
     radius::estimate as estimate_radius,
