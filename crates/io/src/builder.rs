@@ -12,10 +12,12 @@ mod chunks;
 mod first;
 mod late;
 mod origin;
+mod report;
 mod survey;
 #[cfg(test)]
 mod tests;
 
+pub use self::report::{Report, Skipped};
 pub(crate) use self::{
     chunks::{Chunks, Outlet, Sink},
     survey::{Ranks, Survey},
@@ -32,9 +34,6 @@ use puncta_core::{Attributes, MAX_RECORDS, Scalar, Scene, Sphere};
 
 /// How many rows of double precision wait for the origin to be chosen.
 const HEAD: usize = 32_768;
-
-/// How many warnings are kept; what a file can bring about without end is not worth more.
-const WARNINGS_MAX: usize = 100;
 
 /// The largest coordinate: the difference of any two of them is one that `f32` can hold.
 const COORDINATE_MAX: f64 = f32::MAX as f64 * 0.25;
@@ -74,36 +73,6 @@ impl Default for Row<'_> {
     fn default() -> Self {
         let (position, color) = ([0.0; 3], [255; 4]);
         Self { position, radius: None, color, element: 0, scalars: &[], id: None }
-    }
-}
-
-/// What was found while reading.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Report {
-    /// Records that could not be used, by reason.
-    pub skipped: Vec<Skipped>,
-    /// What else a user should know.
-    pub warnings: Vec<String>,
-}
-
-/// Records that could not be used for one reason.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Skipped {
-    /// The reason.
-    pub problem: Problem,
-    /// How many there are.
-    pub count: u64,
-    /// Where the first one is.
-    pub first: Place,
-    /// The value at fault in the first one.
-    pub value: String,
-}
-
-impl Report {
-    /// How many records could not be used.
-    #[must_use]
-    pub fn skipped_count(&self) -> u64 {
-        self.skipped.iter().map(|skipped| skipped.count).sum()
     }
 }
 
@@ -236,72 +205,6 @@ impl<'a> Builder<'a> {
         self.rows += 1;
     }
 
-    /// Counts a row that cannot be used; an error if reading is strict.
-    pub(crate) fn skip(
-        &mut self,
-        problem: Problem,
-        place: Place,
-        value: impl FnOnce() -> String,
-    ) -> Result<(), Fault> {
-        self.report_skip(problem, place, value)?;
-        self.check_count()?;
-        if let Some(survey) = &mut self.survey {
-            survey.skip(&mut self.first);
-        } else if let Some(chunking) = &self.chunking {
-            // The row that the chunks began with is not to be counted twice.
-            if chunking.skip(&mut self.first)? {
-                return Ok(());
-            }
-        } else if self.ids.is_none() {
-            let mut ids = Vec::with_capacity(self.records.capacity());
-            ids.extend((0..self.records.len() as u64).map(to_id));
-            self.ids = Some(ids);
-        }
-        self.rows += 1;
-        Ok(())
-    }
-
-    /// Checks that the next row still has an id.
-    fn check_count(&self) -> Result<(), Fault> {
-        if self.rows < MAX_RECORDS as u64 {
-            return Ok(());
-        }
-        Err(ErrorKind::TooManyRecords(self.rows + 1).into())
-    }
-
-    /// Reports a row that cannot be used; an error if reading is strict.
-    fn report_skip(
-        &mut self,
-        problem: Problem,
-        place: Place,
-        value: impl FnOnce() -> String,
-    ) -> Result<(), Fault> {
-        if self.options.strict {
-            let kind = ErrorKind::Record { problem, value: value() };
-            return Err(Fault { place: Some(place), kind });
-        }
-        match self.report.skipped.iter_mut().find(|skipped| skipped.problem == problem) {
-            Some(skipped) => skipped.count += 1,
-            None => {
-                let value = value();
-                self.report.skipped.push(Skipped { problem, count: 1, first: place, value });
-            }
-        }
-        Ok(())
-    }
-
-    /// Notes something that a user should know.
-    pub(crate) fn warn(&mut self, warning: impl Into<String>) {
-        let warning = warning.into();
-        let warnings = &mut self.report.warnings;
-        if warnings.len() < WARNINGS_MAX && !warnings.contains(&warning) {
-            warnings.push(warning);
-            if warnings.len() == WARNINGS_MAX {
-                warnings.push("there are more warnings than these".to_owned());
-            }
-        }
-    }
-
     /// Gives a radius to the rows that came without one; whether there are any.
     pub(crate) fn fill_radius(&mut self, radius: f64) -> bool {
         let smallest = f64::from(f32::MIN_POSITIVE);
@@ -313,25 +216,6 @@ impl<'a> Builder<'a> {
         let missing = self.records.iter_mut().filter(|sphere| sphere.radius.is_nan());
         missing.for_each(|sphere| sphere.radius = radius);
         std::mem::take(&mut self.radius_missing)
-    }
-
-    /// Counts `count` rows that cannot be used, the first of which is at this place; an error if
-    /// reading is strict.
-    pub(crate) fn skip_many(
-        &mut self,
-        problem: Problem,
-        (place, count): (Place, u64),
-        value: impl FnOnce() -> String,
-    ) -> Result<(), Fault> {
-        let Some(more) = count.checked_sub(1) else { return Ok(()) };
-        self.skip(problem, place, value)?;
-        self.rows = self.rows.saturating_add(more);
-        if self.rows > MAX_RECORDS as u64 {
-            return Err(ErrorKind::TooManyRecords(self.rows).into());
-        }
-        let skipped = self.report.skipped.iter_mut().find(|skipped| skipped.problem == problem);
-        skipped.into_iter().for_each(|skipped| skipped.count += more);
-        Ok(())
     }
 
     /// The scene of all rows, and what was found on the way; an empty one if the rows went

@@ -1,6 +1,6 @@
 //! Tests of the builder.
 
-use super::*;
+use super::{report::WARNINGS_MAX, *};
 
 fn scene(positions: &[[f64; 3]], precision: Precision) -> Scene {
     let options = ReadOptions::default().radius(1.0);
