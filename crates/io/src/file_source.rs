@@ -7,17 +7,6 @@ second time its rows come in chunks, from a thread of its own, and they are thos
 [`ReadOptions::read`] gives, bit by bit. A third reading, in between, finds the distances between
 records where a radius must be estimated.
 
-| format | what is held |
-| --- | --- |
-| XYZ, PDB, LAMMPS, PLY, MMPLD, LAS, LAZ | a few chunks of about a megabyte each |
-| XYZ, PDB, LAMMPS, PLY, MMPLD of one list, compressed with gzip | the same |
-| MMPLD of several lists, compressed with gzip | a frame, decompressed |
-| LAS and LAZ, compressed with gzip | the whole file, decompressed |
-| VTK | all records: its columns follow each other |
-
-The records of a LAMMPS dump whose ids do not ascend come in the order of the file, since their order
-is known only when all ids are; a warning says so, and what their ids are then.
-
 The reader is to find the same rows each time. If the file was changed in between, so that positions
 or radii are others, then the source ends with an error.
 */
@@ -85,9 +74,16 @@ impl ReadOptions {
 /// their ids keep the order of the file. If the ids are consecutive then [`Attributes::ids`] tells
 /// the order that `read` gives; else it tells their rows. [`report`](Self::report) has a warning.
 ///
-/// Memory is a few megabytes for all formats but VTK, which has its columns one behind the other:
-/// its records are held. What is compressed with gzip is decompressed as it is read, except LAS, LAZ
-/// and MMPLD of several lists, which are held decompressed.
+/// What is held in memory depends on the format, but only for the last three lines of this table on
+/// the size of the file:
+///
+/// | format | what is held |
+/// | --- | --- |
+/// | XYZ, PDB, LAMMPS, PLY, MMPLD, LAS, LAZ | 4 MB: a few chunks and buffers (LAZ: 6 MB) |
+/// | XYZ, PDB, LAMMPS, PLY, MMPLD of one list, compressed with gzip | the same |
+/// | MMPLD of several lists, compressed with gzip | a frame, decompressed |
+/// | LAS and LAZ, compressed with gzip | the whole file, decompressed |
+/// | VTK | all records: its columns follow each other |
 ///
 /// The file should not change meanwhile; if its records do, then the source ends with
 /// [`ErrorKind::Changed`](crate::ErrorKind::Changed). After an error nothing more comes.

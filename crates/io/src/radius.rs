@@ -156,4 +156,49 @@ mod tests {
         assert_eq!(estimate(&[Sphere::default()]), 1.0);
         assert_eq!(estimate(&[Sphere::default(); 9]), 1.0);
     }
+
+    /// Points of no order, of which some coincide.
+    fn cloud(count: u32) -> Vec<Sphere> {
+        let x = |i: u32, axis: u64| (mix(3 * u64::from(i / 2) + axis) >> 44) as f32;
+        (0..count).map(|i| Sphere::new([0, 1, 2].map(|axis| x(i, axis)), 0.0)).collect()
+    }
+
+    #[test]
+    fn a_sample_is_that_of_the_smallest_hashes() {
+        for count in [0, 1, 511, 512, 513, 1023, 1024, 1025, 600_000, 3_000_000] {
+            let mut sample = Sample::default();
+            (0..count).for_each(|item| sample.add(item));
+            let mut found = sample.into_items(count);
+            let mut expected: Vec<u64> = (0..count).collect();
+            expected.sort_unstable_by_key(|&item| mix(item));
+            expected.truncate(usize::try_from((1 << 28) / count.max(1)).unwrap().min(512));
+            found.sort_unstable_by_key(|&item| mix(item));
+            assert_eq!(found, expected, "{count}");
+        }
+    }
+
+    #[test]
+    fn records_can_be_looked_at_in_parts() {
+        let records = cloud(5000);
+        let mut sample = Sample::default();
+        records.iter().for_each(|record| sample.add(record.position()));
+        let positions = sample.into_items(5000);
+        let distance = |a: &Sphere, b: Vec3| a.position().as_dvec3().distance(b.as_dvec3());
+        let mut distances: Vec<f64> = positions
+            .iter()
+            .map(|&position| {
+                let others = records.iter().map(|record| distance(record, position));
+                others.filter(|distance| *distance > 0.0).fold(f64::INFINITY, f64::min)
+            })
+            .collect();
+        distances.sort_unstable_by(f64::total_cmp);
+        let expected = 0.9 * distances[distances.len() / 2];
+        for part in [1, 7, 1024, 5000] {
+            let mut nearest = Nearest::new(positions.clone());
+            records.chunks(part).for_each(|records| nearest.look_at(records));
+            let radius = nearest.radius();
+            assert_eq!(radius, estimate(&records));
+            assert!((f64::from(radius) / expected - 1.0).abs() < 1e-6, "{radius} {expected}");
+        }
+    }
 }

@@ -33,7 +33,7 @@ type Make = fn(&mut dyn Write, u32) -> std::io::Result<()>;
 fn ply(file: &mut dyn Write, count: u32) -> std::io::Result<()> {
     write!(file, "ply\nformat binary_little_endian 1.0\nelement vertex {count}\n")?;
     write!(file, "property float x\nproperty float y\nproperty float z\nproperty float s\n")?;
-    write!(file, "end_header\n")?;
+    writeln!(file, "end_header")?;
     (0..count).try_for_each(|i| {
         let [x, y] = [i % 1000, i / 1000].map(|x| x as f32);
         file.write_all(&[x + 5000.0, y, 0.0, x * y].map(f32::to_le_bytes).concat())

@@ -85,7 +85,8 @@ impl<'a> Builder<'a> {
         let row_bytes = size_of::<Sphere>()
             + 4 * (columns.filter(|is_there| *is_there).count() + self.scalars.len())
             + usize::from(self.elements.is_some());
-        let rows_max = (CHUNK_BYTES / row_bytes).max(1);
+        let count = usize::try_from(survey.count).unwrap_or(usize::MAX);
+        let rows_max = (CHUNK_BYTES / row_bytes).min(count).max(1);
         self.chunking = Some(Chunking { chunks, rows_max, handed: 0, digest: Digest::default() });
         self.make_room(rows_max);
         match &survey.first {
