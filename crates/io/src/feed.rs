@@ -2,8 +2,8 @@
 A feed: a reader on a thread of its own, which hands over chunks one by one.
 
 A reader pushes rows, and whoever uses a source pulls them: the thread lets both go their way. The
-reader is at most two chunks ahead. What goes wrong, a panic too, arrives behind all chunks that came
-before it. When a feed is dropped, the reader meets an error at its next read or chunk and ends.
+reader is at most two chunks ahead. What goes wrong, a panic too, arrives behind all chunks before
+it. When a feed is dropped, the reader meets an error at its next read or chunk and ends.
 */
 
 use crate::{

@@ -1,11 +1,11 @@
 /*!
 Files as sources: records in chunks, for files that are larger than memory.
 
-A file is read twice. The first time no rows are kept: it tells how many there are, and what a reader
-knows only at the end, as the origin and the radius of rows without one (see `builder::survey`). The
-second time its rows come in chunks, from a thread of its own, and they are those that
-[`ReadOptions::read`] gives, bit by bit. A third reading, in between, finds the distances between
-records where a radius must be estimated.
+A file is read twice. The first time no rows are kept: it tells how many there are, and what a
+reader knows only at the end, as the origin and the radius of rows without one (see
+`builder::survey`). The second time its rows come in chunks, from a thread of its own, and they are
+those that [`ReadOptions::read`] gives, bit by bit. A third reading, in between, finds the distances
+between records where a radius must be estimated.
 
 The reader is to find the same rows each time. If the file was changed in between, so that positions
 or radii are others, then the source ends with an error.
@@ -69,10 +69,11 @@ impl ReadOptions {
 
 /// The records of a file, in chunks.
 ///
-/// They are those that [`ReadOptions::read`] gives, bit by bit, with the same origin, attributes and
-/// ids, and in the same order. There is one exception: atoms of a LAMMPS dump that is not ordered by
-/// their ids keep the order of the file. If the ids are consecutive then [`Attributes::ids`] tells
-/// the order that `read` gives; else it tells their rows. [`report`](Self::report) has a warning.
+/// They are those that [`ReadOptions::read`] gives, bit by bit, with the same origin, attributes
+/// and ids, and in the same order. There is one exception: atoms of a LAMMPS dump that is not
+/// ordered by their ids keep the order of the file. If the ids are consecutive then
+/// [`Attributes::ids`] tells the order that `read` gives; else it tells their rows.
+/// [`report`](Self::report) has a warning.
 ///
 /// What is held in memory depends on the format, but only for the last three lines of this table on
 /// the size of the file:

@@ -1,9 +1,9 @@
 /*!
 A first row that comes last.
 
-A reader may learn only behind all rows that a line in front of them was a row too. It then adds that
-row as the last one, having said so with [`Builder::first_comes`]. A scene is put in order at the
-end. A survey keeps a copy of the row, and the first chunk begins with it.
+A reader may learn only behind all rows that a line in front of them was a row too. It then adds
+that row as the last one, having said so with [`Builder::first_comes`]. A scene is put in order at
+the end. A survey keeps a copy of the row, and the first chunk begins with it.
 */
 
 use super::{Builder, Row};

@@ -1,9 +1,9 @@
 /*!
 Columns that come, or change, after the rows.
 
-In files that have all positions first, a column has a value for each row of the file, and those of skipped rows must be left out:
-[`Builder::keeps`] tells which. Radii go into the records one by one, without a copy; rows whose
-radius cannot be used leave all columns at the end of that.
+In files that have all positions first, a column has a value for each row of the file, and those of
+skipped rows must be left out: [`Builder::keeps`] tells which. Radii go into the records one by one,
+without a copy; rows whose radius cannot be used leave all columns at the end of that.
 */
 
 use super::{Builder, Precision, is_radius, to_f32, to_id};

@@ -2,10 +2,10 @@
 A survey: what only the whole file tells, found without keeping its rows.
 
 Some of a scene is known only when all of it was read: the origin of single precision, the radius of
-rows without one, whether elements are any, how deep colors are. A reader whose rows go into a survey
-reads all the same, and meets all errors. What it finds is what a scene would be made with, by the
-same code or on the same numbers: so chunks that are made with it later have the same records, bit by
-bit.
+rows without one, whether elements are any, how deep colors are. A reader whose rows go into a
+survey reads all the same, and meets all errors. What it finds is what a scene would be made with,
+by the same code or on the same numbers: so chunks that are made with it later have the same
+records, bit by bit.
 
 The radius that is estimated needs a third look, since the sample of records, to which the nearest
 ones are to be found, is known only at the end of the survey.

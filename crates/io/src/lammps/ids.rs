@@ -2,8 +2,8 @@
 The ids of atoms, and what they are for.
 
 A scene is put into their order at the end, for which all of them are held. Chunks cannot be: their
-records come in the order of the file, and so that nobody needs to hold all ids, it is looked at what
-these are.
+records come in the order of the file, and so that nobody needs to hold all ids, it is looked at
+what these are.
 
 * They ascend already. Chunks are then what a scene is.
 * They are some whole numbers without gaps, in any order, as those of a whole simulation are. The
