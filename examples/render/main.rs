@@ -58,7 +58,7 @@ fn sort(options: &Options, scene: &mut Scene<Sphere>) -> Result<Grid> {
     let spinner = progress::Bar::spinner("sorting");
     let resolution =
         options.grid.map_or_else(Resolution::default, |cells| Resolution::LongestSide(cells.get()));
-    let grid = Grid::sort_scene(scene, &GridConfig { resolution })?;
+    let grid = Grid::sort_scene(scene, &GridConfig { resolution, ..GridConfig::default() })?;
     spinner.finish();
     Ok(grid)
 }

@@ -48,7 +48,7 @@ pub trait Source: Sized {
     /// What can go wrong.
     type Error;
 
-    /// How many records are still to come, if that is known.
+    /// How many records are still to come, exactly; `None` if that is not known.
     fn remaining(&self) -> Option<u64>;
 
     /// Appends at most `limit` records, and their attributes, to `scene`; returns how many.
@@ -56,9 +56,13 @@ pub trait Source: Sized {
     /// Less than `limit` means that the source has come to its end. The origin of the scene is set
     /// by the first call and stays the same from then on.
     ///
+    /// The scene is one that is empty, was cleared, or holds what this source gave before. Where
+    /// records lie in the order of the source, they need no ids; so whoever clears the scene must
+    /// count, and add what was cleared to the index of a record to have its id.
+    ///
     /// # Errors
     ///
-    /// When the records cannot be had.
+    /// When the records cannot be had. Those before them are in the scene by then.
     fn append(
         &mut self,
         scene: &mut Scene<Self::Record>,

@@ -91,6 +91,16 @@ impl<'a> Atoms<'a> {
         values.colors.warn(&mut self.builder);
     }
 
+    /// Says that the row to be added next, the last one, stands before all others in the file.
+    pub(crate) fn first_comes(&mut self) {
+        self.builder.first_comes();
+    }
+
+    /// The builder, for what is not about atoms.
+    pub(crate) fn builder(&mut self) -> &mut Builder<'a> {
+        &mut self.builder
+    }
+
     pub(crate) fn warn(&mut self, warning: impl Into<String>) {
         self.builder.warn(warning);
     }
@@ -107,10 +117,9 @@ impl<'a> Atoms<'a> {
                 "the element of {count} atoms is not known{rest}; the first: {first}"
             ));
         }
-        let (mut scene, report) = self.builder.finish()?;
         if !self.known {
-            scene.attributes.elements = None;
+            self.builder.drop_elements();
         }
-        Ok((scene, report))
+        self.builder.finish()
     }
 }

@@ -1,13 +1,29 @@
 /*!
-The builder: readers push rows into it and it makes a scene of them.
+The builder: readers push rows into it and it makes a scene of them, or chunks of one.
 
 It does what all readers have in common: it chooses the origin, skips and counts rows that cannot be
 used, keeps the wanted columns, and gives rows without a radius an estimated one.
+
+Where the rows go is told by a [`Sink`]. A file that is larger than memory is read twice: by
+[`survey`], which keeps no rows, and in [`chunks`], which know from the survey what comes at the end.
 */
 
+mod chunks;
+mod first;
 mod late;
 mod origin;
+mod report;
+mod survey;
+#[cfg(test)]
+mod tests;
 
+pub use self::report::{Report, Skipped};
+pub(crate) use self::{
+    chunks::{Chunks, Outlet, Sink},
+    survey::{Ranks, Survey},
+};
+
+use self::{chunks::Chunking, first::First};
 use crate::{
     ReadOptions,
     error::{ErrorKind, Fault, Place, Problem},
@@ -18,9 +34,6 @@ use puncta_core::{Attributes, Column, MAX_RECORDS, Scalar, Scene, Sphere};
 
 /// How many rows of double precision wait for the origin to be chosen.
 const HEAD: usize = 32_768;
-
-/// How many warnings are kept; what a file can bring about without end is not worth more.
-const WARNINGS_MAX: usize = 100;
 
 /// The largest coordinate: the difference of any two of them is one that `f32` can hold.
 const COORDINATE_MAX: f64 = f32::MAX as f64 * 0.25;
@@ -52,41 +65,14 @@ pub(crate) struct Row<'a> {
     pub(crate) element: u8,
     /// One value for each name in [`Columns::scalars`].
     pub(crate) scalars: &'a [f32],
+    /// What it is known by in a chunk; its number in the file if there is none.
+    pub(crate) id: Option<u32>,
 }
 
 impl Default for Row<'_> {
     fn default() -> Self {
-        Self { position: [0.0; 3], radius: None, color: [255; 4], element: 0, scalars: &[] }
-    }
-}
-
-/// What was found while reading.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Report {
-    /// Records that could not be used, by reason.
-    pub skipped: Vec<Skipped>,
-    /// What else a user should know.
-    pub warnings: Vec<String>,
-}
-
-/// Records that could not be used for one reason.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Skipped {
-    /// The reason.
-    pub problem: Problem,
-    /// How many there are.
-    pub count: u64,
-    /// Where the first one is.
-    pub first: Place,
-    /// The value at fault in the first one.
-    pub value: String,
-}
-
-impl Report {
-    /// How many records could not be used.
-    #[must_use]
-    pub fn skipped_count(&self) -> u64 {
-        self.skipped.iter().map(|skipped| skipped.count).sum()
+        let (position, color) = ([0.0; 3], [255; 4]);
+        Self { position, radius: None, color, element: 0, scalars: &[], id: None }
     }
 }
 
@@ -108,13 +94,19 @@ pub(crate) struct Builder<'a> {
     rows: u64,
     report: Report,
     radius_missing: bool,
+    /// What was found so far, if no rows are kept.
+    survey: Option<Box<Survey>>,
+    /// Where full chunks go, if rows are kept in these only.
+    chunking: Option<Chunking<'a>>,
+    /// What is known of a first row that comes last.
+    first: First,
 }
 
 impl<'a> Builder<'a> {
     pub(crate) fn new(options: &'a ReadOptions, precision: Precision, columns: &Columns) -> Self {
         let wanted = columns.scalars.iter().enumerate().filter(|(_, name)| options.wants(name));
         let scalar = |name: &String| Scalar { name: name.clone(), values: Column::new() };
-        Self {
+        let mut builder = Self {
             options,
             precision,
             origin: None,
@@ -127,7 +119,16 @@ impl<'a> Builder<'a> {
             rows: 0,
             report: Report::default(),
             radius_missing: false,
+            survey: None,
+            chunking: None,
+            first: First::default(),
+        };
+        match &options.sink {
+            Sink::Scene => {}
+            Sink::Survey(_) => builder.survey = Some(Box::default()),
+            Sink::Chunks(chunks) => builder.start_chunks(chunks),
         }
+        builder
     }
 
     /// Makes room for exactly `count` more rows. Only for counts that the file's size confirms.
@@ -137,7 +138,18 @@ impl<'a> Builder<'a> {
             return Err(ErrorKind::TooManyRecords(total).into());
         }
         let count = usize::try_from(count).map_err(|_| ErrorKind::TooManyRecords(count))?;
+        if matches!(self.options.sink, Sink::Scene) {
+            self.make_room(count);
+        }
+        Ok(())
+    }
+
+    /// Makes room in all columns.
+    fn make_room(&mut self, count: usize) {
         self.records.reserve_exact(count);
+        if let Some(ids) = &mut self.ids {
+            ids.reserve_exact(count);
+        }
         if let Some(colors) = &mut self.colors {
             colors.reserve_exact(count);
         }
@@ -147,7 +159,6 @@ impl<'a> Builder<'a> {
         for (_, scalar) in &mut self.scalars {
             scalar.values.to_mut().reserve_exact(count);
         }
-        Ok(())
     }
 
     /// Adds a row, or skips it if it cannot be used.
@@ -164,11 +175,23 @@ impl<'a> Builder<'a> {
         }
         self.check_count()?;
         self.radius_missing |= radius.is_none();
-        let radius = radius.map_or(f32::NAN, |radius| to_f32(radius * self.options.radius_scale));
+        let radius = radius.map(|radius| to_f32(radius * self.options.radius_scale));
+        if self.survey.is_some() {
+            self.survey_row(row, radius);
+        } else if self.chunking.is_some() {
+            self.chunk_row(row, radius)?;
+        } else {
+            self.store(row, radius.unwrap_or(f32::NAN));
+        }
+        Ok(())
+    }
+
+    /// Adds a row to the columns.
+    fn store(&mut self, row: &Row<'_>, radius: f32) {
         let center = self.place(row.position);
         self.records.push(Sphere::new(center, radius));
         if let Some(ids) = &mut self.ids {
-            ids.push(to_id(self.rows));
+            ids.push(row.id.unwrap_or(to_id(self.rows)));
         }
         if let Some(colors) = &mut self.colors {
             colors.push(row.color);
@@ -180,66 +203,6 @@ impl<'a> Builder<'a> {
             scalar.values.to_mut().push(row.scalars.get(*column).copied().unwrap_or(f32::NAN));
         }
         self.rows += 1;
-        Ok(())
-    }
-
-    /// Counts a row that cannot be used; an error if reading is strict.
-    pub(crate) fn skip(
-        &mut self,
-        problem: Problem,
-        place: Place,
-        value: impl FnOnce() -> String,
-    ) -> Result<(), Fault> {
-        self.report_skip(problem, place, value)?;
-        self.check_count()?;
-        if self.ids.is_none() {
-            let mut ids = Vec::with_capacity(self.records.capacity());
-            ids.extend((0..self.records.len() as u64).map(to_id));
-            self.ids = Some(ids);
-        }
-        self.rows += 1;
-        Ok(())
-    }
-
-    /// Checks that the next row still has an id.
-    fn check_count(&self) -> Result<(), Fault> {
-        if self.rows < MAX_RECORDS as u64 {
-            return Ok(());
-        }
-        Err(ErrorKind::TooManyRecords(self.rows + 1).into())
-    }
-
-    /// Reports a row that cannot be used; an error if reading is strict.
-    fn report_skip(
-        &mut self,
-        problem: Problem,
-        place: Place,
-        value: impl FnOnce() -> String,
-    ) -> Result<(), Fault> {
-        if self.options.strict {
-            let kind = ErrorKind::Record { problem, value: value() };
-            return Err(Fault { place: Some(place), kind });
-        }
-        match self.report.skipped.iter_mut().find(|skipped| skipped.problem == problem) {
-            Some(skipped) => skipped.count += 1,
-            None => {
-                let value = value();
-                self.report.skipped.push(Skipped { problem, count: 1, first: place, value });
-            }
-        }
-        Ok(())
-    }
-
-    /// Notes something that a user should know.
-    pub(crate) fn warn(&mut self, warning: impl Into<String>) {
-        let warning = warning.into();
-        let warnings = &mut self.report.warnings;
-        if warnings.len() < WARNINGS_MAX && !warnings.contains(&warning) {
-            warnings.push(warning);
-            if warnings.len() == WARNINGS_MAX {
-                warnings.push("there are more warnings than these".to_owned());
-            }
-        }
     }
 
     /// Gives a radius to the rows that came without one; whether there are any.
@@ -247,37 +210,23 @@ impl<'a> Builder<'a> {
         let smallest = f64::from(f32::MIN_POSITIVE);
         let radius = (radius * self.options.radius_scale).clamp(smallest, f64::from(f32::MAX));
         let radius = to_f32(radius);
+        if let Some(survey) = &mut self.survey {
+            survey.radius = Some(radius);
+        }
         let missing = self.records.iter_mut().filter(|sphere| sphere.radius.is_nan());
         missing.for_each(|sphere| sphere.radius = radius);
         std::mem::take(&mut self.radius_missing)
     }
 
-    /// Counts `count` rows that cannot be used, the first of which is at this place; an error if
-    /// reading is strict.
-    pub(crate) fn skip_many(
-        &mut self,
-        problem: Problem,
-        (place, count): (Place, u64),
-        value: impl FnOnce() -> String,
-    ) -> Result<(), Fault> {
-        let Some(more) = count.checked_sub(1) else { return Ok(()) };
-        self.skip(problem, place, value)?;
-        self.rows = self.rows.saturating_add(more);
-        if self.rows > MAX_RECORDS as u64 {
-            return Err(ErrorKind::TooManyRecords(self.rows).into());
-        }
-        let skipped = self.report.skipped.iter_mut().find(|skipped| skipped.problem == problem);
-        skipped.into_iter().for_each(|skipped| skipped.count += more);
-        Ok(())
-    }
-
-    /// The colors so far, for readers that learn of their meaning only as they go.
-    pub(crate) fn colors_mut(&mut self) -> &mut Option<Vec<[u8; 4]>> {
-        &mut self.colors
-    }
-
-    /// The scene of all rows, and what was found on the way.
+    /// The scene of all rows, and what was found on the way; an empty one if the rows went
+    /// elsewhere.
     pub(crate) fn finish(mut self) -> Result<(Scene, Report), Fault> {
+        if let Some(survey) = self.survey.take() {
+            return self.finish_survey(*survey);
+        }
+        if self.chunking.is_some() {
+            return self.finish_chunks();
+        }
         if self.records.is_empty() {
             return Err(ErrorKind::NoRecords { skipped: self.report.skipped_count() }.into());
         }
@@ -287,20 +236,30 @@ impl<'a> Builder<'a> {
         }
         self.shrink();
         if self.radius_missing {
-            let scale = self.options.radius_scale;
-            let estimate = to_f32(f64::from(radius::estimate(&self.records)) * scale);
-            self.warn(format!("the file gives no radius; {estimate} was taken from the spacing"));
+            let estimate = radius::estimate(&self.records);
+            let estimate = estimated(estimate, self.options);
+            self.warn(estimate_text(estimate));
             let missing = self.records.iter_mut().filter(|sphere| sphere.radius.is_nan());
             missing.for_each(|sphere| sphere.radius = estimate);
         }
+        self.put_first();
+        Ok((self.take(), self.report))
+    }
+
+    /// The scene of the rows so far; their columns stay, but have no rows any more.
+    fn take(&mut self) -> Scene {
+        let scalar = |scalar: &mut Scalar| Scalar {
+            name: scalar.name.clone(),
+            values: std::mem::take(&mut scalar.values),
+        };
         let attributes = Attributes {
-            ids: self.ids.map(Column::from),
-            colors: self.colors.map(Column::from),
-            elements: self.elements.map(Column::from),
-            scalars: self.scalars.into_iter().map(|(_, scalar)| scalar).collect(),
+            ids: self.ids.as_mut().map(|ids| std::mem::take(ids).into()),
+            colors: self.colors.as_mut().map(|colors| std::mem::take(colors).into()),
+            elements: self.elements.as_mut().map(|elements| std::mem::take(elements).into()),
+            scalars: self.scalars.iter_mut().map(|(_, column)| scalar(column)).collect(),
         };
         let origin = self.origin.unwrap_or(DVec3::ZERO);
-        Ok((Scene { origin, records: self.records.into(), attributes }, self.report))
+        Scene { origin, records: std::mem::take(&mut self.records).into(), attributes }
     }
 
     /// Gives back the room that no row took.
@@ -315,7 +274,11 @@ impl<'a> Builder<'a> {
     /// The offset to store for a position; it may be put right later.
     fn place(&mut self, position: [f64; 3]) -> [f32; 3] {
         if self.precision == Precision::Single {
-            return position.map(to_f32);
+            // The origin is known in advance or not at all.
+            return match self.origin {
+                Some(origin) if origin != DVec3::ZERO => offset(position, origin),
+                _ => position.map(to_f32),
+            };
         }
         if self.head.len() == HEAD {
             self.settle();
@@ -356,6 +319,16 @@ fn offset(position: [f64; 3], origin: DVec3) -> [f32; 3] {
     (DVec3::from(position) - origin).to_array().map(to_f32)
 }
 
+/// The radius to give for an estimate, at the scale of the options.
+pub(crate) fn estimated(estimate: f32, options: &ReadOptions) -> f32 {
+    to_f32(f64::from(estimate) * options.radius_scale)
+}
+
+/// What to tell of an estimated radius.
+pub(crate) fn estimate_text(radius: f32) -> String {
+    format!("the file gives no radius; {radius} was taken from the spacing")
+}
+
 /// Whether a radius can be drawn and stored.
 pub(crate) fn is_radius(radius: f64) -> bool {
     radius <= f64::from(f32::MAX) && radius >= f64::from(f32::MIN_POSITIVE)
@@ -369,108 +342,4 @@ pub(crate) fn to_f32(x: f64) -> f32 {
 #[expect(clippy::cast_possible_truncation, reason = "rows are at most MAX_RECORDS")]
 fn to_id(row: u64) -> u32 {
     row as u32
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn scene(positions: &[[f64; 3]], precision: Precision) -> Scene {
-        let options = ReadOptions::default().radius(1.0);
-        let mut builder = Builder::new(&options, precision, &Columns::default());
-        for &position in positions {
-            builder.push(&Row { position, ..Row::default() }, Place::Line(1)).unwrap();
-        }
-        builder.finish().unwrap().0
-    }
-
-    #[test]
-    fn positions_around_zero_are_stored_as_they_are() {
-        let scene = scene(&[[0.1, 0.2, 0.3], [0.9, 1.0, -0.25]], Precision::Double);
-        assert_eq!(scene.origin, DVec3::ZERO);
-        assert_eq!(scene.records[0].center, [0.1, 0.2, 0.3]);
-    }
-
-    #[test]
-    fn far_positions_keep_their_digits() {
-        let positions = [[637_000.01, 851_000.02, 450.03], [637_001.04, 851_002.05, 451.06]];
-        let scene = scene(&positions, Precision::Double);
-        for (index, position) in positions.iter().enumerate() {
-            assert!((scene.position(index) - DVec3::from(*position)).abs().max_element() < 1e-7);
-        }
-    }
-
-    #[test]
-    fn a_box_without_measurable_extent_has_an_origin() {
-        let scene = scene(&[[2.0, 0.0, 0.0], [2.0, 1e-320, 0.0]], Precision::Double);
-        assert_eq!(scene.origin, DVec3::new(2.0, 0.0, 0.0));
-    }
-
-    #[test]
-    fn strays_do_not_take_the_digits_of_the_rest() {
-        let near = |i: u32| [637_000.0 + f64::from(i) * 0.01, 851_000.02, 400.0];
-        let positions: Vec<[f64; 3]> =
-            std::iter::once([0.0; 3]).chain((0..5000).map(near)).collect();
-        let scene = scene(&positions, Precision::Double);
-        assert_eq!(scene.position(0), DVec3::ZERO);
-        for (index, position) in positions.iter().enumerate() {
-            let error = (scene.position(index) - DVec3::from(*position)).abs().max_element();
-            assert!(error < 2e-5, "{index}: {error}");
-        }
-    }
-
-    #[test]
-    fn warnings_have_an_end() {
-        let options = ReadOptions::default();
-        let mut builder = Builder::new(&options, Precision::Double, &Columns::default());
-        (0..1000).for_each(|i| builder.warn(format!("warning {i}")));
-        assert_eq!(builder.report.warnings.len(), WARNINGS_MAX + 1);
-    }
-
-    #[test]
-    fn moving_single_precision_is_exact() {
-        let positions: Vec<[f64; 3]> = (0..100_u16)
-            .map(|i| [1e7_f32 + f32::from(i), -3e5 + 0.1 * f32::from(i), 77.7].map(f64::from))
-            .collect();
-        let scene = scene(&positions, Precision::Single);
-        assert!(scene.origin.x != 0.0 && scene.origin.y != 0.0);
-        for (index, position) in positions.iter().enumerate() {
-            assert_eq!(scene.position(index), DVec3::from(*position));
-        }
-    }
-
-    #[test]
-    fn many_rows_of_double_precision_share_one_origin() {
-        let positions: Vec<[f64; 3]> =
-            (0..100_000_u32).map(|i| [1e7 + f64::from(i) * 0.5, 0.0, 0.0]).collect();
-        let scene = scene(&positions, Precision::Double);
-        for index in [0, 1, HEAD - 2, HEAD - 1, HEAD, HEAD + 1, 99_999] {
-            assert_eq!(scene.position(index), DVec3::from(positions[index]), "{index}");
-        }
-    }
-
-    #[test]
-    fn rows_that_cannot_be_used_are_counted_and_keep_ids_right() {
-        let options = ReadOptions::default();
-        let mut builder = Builder::new(&options, Precision::Double, &Columns::default());
-        let row =
-            |x, radius| Row { position: [x, 0.0, 0.0], radius: Some(radius), ..Row::default() };
-        for (x, radius) in [(0.0, 1.0), (f64::NAN, 1.0), (2.0, -1.0), (3.0, 0.0), (4.0, 1.0)] {
-            builder.push(&row(x, radius), Place::Line(7)).unwrap();
-        }
-        let (scene, report) = builder.finish().unwrap();
-        assert_eq!(scene.attributes.ids, Some([0, 4].into()));
-        assert_eq!(report.skipped_count(), 3);
-        assert_eq!(report.skipped[1].value, "-1");
-    }
-
-    #[test]
-    fn strict_reading_names_the_value() {
-        let options = ReadOptions::default().strict(true);
-        let mut builder = Builder::new(&options, Precision::Double, &Columns::default());
-        let row = Row { position: [0.0, f64::INFINITY, 0.0], ..Row::default() };
-        let error = builder.push(&row, Place::Line(3)).unwrap_err().in_file("a.xyz");
-        let text = "a.xyz, line 3: a position that cannot be stored: (0, inf, 0)";
-        assert_eq!(error.to_string(), text);
-    }
 }

@@ -95,6 +95,9 @@ pub enum ErrorKind {
         /// How many records could not be used.
         skipped: u64,
     },
+    /// The file was read more than once, and was not the same each time.
+    #[error("the file changed while it was read")]
+    Changed,
     /// More records than ids.
     #[error("{0} records are more than a scene can hold")]
     TooManyRecords(u64),

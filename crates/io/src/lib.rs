@@ -10,6 +10,8 @@ println!("{} atoms", scene.records.len());
 [`ReadOptions`] chooses a frame, a radius, or the columns to keep, and reports what was skipped. The
 [`Format`] is found by content first, then by name; files compressed with gzip are read as they are.
 
+[`ReadOptions::stream`] reads a file that is larger than memory in chunks.
+
 Every reader keeps three promises. What is wrong with a file ends in an [`Error`] that names the
 file, the place and the value. Records that cannot be used are skipped, counted and reported. And no
 number in a file makes a reader allocate more than the file itself justifies.
@@ -20,8 +22,11 @@ mod builder;
 mod color;
 pub mod elements;
 mod error;
+mod feed;
+mod file_source;
 mod format;
 mod gzip;
+mod hash;
 mod input;
 mod lammps;
 mod las;
@@ -43,6 +48,7 @@ mod xyz;
 pub use crate::{
     builder::{Report, Skipped},
     error::{Error, ErrorKind, Place, Problem},
+    file_source::FileSource,
     format::Format,
     options::{Loaded, ReadOptions, Scalars},
     radius::estimate as estimate_radius,

@@ -1,7 +1,7 @@
 //! What to read of a file, and what came of it.
 
 use crate::{
-    builder::{Report, is_radius},
+    builder::{Report, Sink, is_radius},
     elements::Radii,
     error::{Error, ErrorKind, Fault, quote},
     format::Format,
@@ -48,6 +48,8 @@ pub struct ReadOptions {
     pub(crate) strict: bool,
     format: Option<Format>,
     on_progress: Option<OnProgress>,
+    /// Where the rows go that are read.
+    pub(crate) sink: Sink,
 }
 
 /// Which scalar columns of a file to keep.
@@ -71,6 +73,7 @@ impl Default for ReadOptions {
             strict: false,
             format: None,
             on_progress: None,
+            sink: Sink::default(),
         }
     }
 }
@@ -143,15 +146,8 @@ impl ReadOptions {
     pub fn read(&self, path: impl AsRef<Path>) -> Result<Loaded, Error> {
         let path = path.as_ref();
         let read = || {
-            let file = File::open(path)?;
-            let metadata = file.metadata()?;
-            if metadata.is_dir() {
-                return Err(ErrorKind::Folder.into());
-            }
-            if !metadata.is_file() {
-                return Err(ErrorKind::NotRegular.into());
-            }
-            self.read_stream(path, file, metadata.len())
+            let (file, length) = open(path)?;
+            self.read_stream(path, file, length)
         };
         read().map_err(|fault: Fault| fault.in_file(path))
     }
@@ -163,8 +159,13 @@ impl ReadOptions {
     /// When the file cannot be read: see [`ErrorKind`].
     pub fn read_bytes(&self, name: impl AsRef<Path>, bytes: &[u8]) -> Result<Loaded, Error> {
         let name = name.as_ref();
-        self.read_stream(name, Cursor::new(bytes), bytes.len() as u64)
-            .map_err(|fault| fault.in_file(name))
+        let loaded = self
+            .read_stream(name, Cursor::new(bytes), bytes.len() as u64)
+            .map_err(|fault| fault.in_file(name));
+        // So each file of each test is one of this, too.
+        #[cfg(test)]
+        crate::file_source::tests::assert_same(self, (name, bytes), &loaded);
+        loaded
     }
 
     /// Whether the scalar of this name is to be kept.
@@ -175,8 +176,13 @@ impl ReadOptions {
         }
     }
 
+    /// The same options, for rows that go elsewhere.
+    pub(crate) fn with_sink(&self, sink: Sink) -> Self {
+        Self { sink, ..self.clone() }
+    }
+
     /// Reads a stream of `length` bytes.
-    fn read_stream(
+    pub(crate) fn read_stream(
         &self,
         name: &Path,
         stream: impl Read + Seek + Send + Sync,
@@ -186,9 +192,8 @@ impl ReadOptions {
         if length == 0 {
             return Err(ErrorKind::Empty.into());
         }
-        let on_progress = self.on_progress.clone();
-        let mut stream =
-            BufReader::with_capacity(1 << 18, Watched { stream, position: 0, length, on_progress });
+        let watched = Watched { stream, position: 0, length, options: self };
+        let mut stream = BufReader::with_capacity(1 << 18, watched);
         let is_gzip = stream.fill_buf()?.starts_with(&[0x1f, 0x8b]);
         let mut head = Vec::new();
         if is_gzip {
@@ -223,7 +228,8 @@ impl ReadOptions {
             Format::Pdb => pdb::read(&mut input, self),
             Format::Mmpld => mmpld::read(&mut input, self),
             Format::Ply => ply::read(&mut input, self),
-            Format::Vtk => vtk::read(&mut input, self),
+            // Its columns come one behind the other, so there can be no chunks of rows.
+            Format::Vtk => vtk::read(&mut input, &self.with_sink(Sink::Scene)),
             Format::Las => {
                 Err(ErrorKind::Decoder("LAS needs a stream that can seek".into()).into())
             }
@@ -273,26 +279,42 @@ impl fmt::Debug for ReadOptions {
     }
 }
 
+/// Opens a regular file; also returns its length.
+pub(crate) fn open(path: &Path) -> Result<(File, u64), Fault> {
+    let file = File::open(path)?;
+    let metadata = file.metadata()?;
+    if metadata.is_dir() {
+        return Err(ErrorKind::Folder.into());
+    }
+    if !metadata.is_file() {
+        return Err(ErrorKind::NotRegular.into());
+    }
+    Ok((file, metadata.len()))
+}
+
 /// A stream that tells how far it was read.
-struct Watched<S> {
+struct Watched<'a, S> {
     stream: S,
     position: u64,
     length: u64,
-    on_progress: Option<OnProgress>,
+    options: &'a ReadOptions,
 }
 
-impl<S: Read> Read for Watched<S> {
+impl<S: Read> Read for Watched<'_, S> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.options.sink.is_abandoned() {
+            return Err(io::Error::other("nobody takes what is read"));
+        }
         let read = self.stream.read(buffer)?;
         self.position += read as u64;
-        if let Some(on_progress) = &self.on_progress {
+        if let Some(on_progress) = &self.options.on_progress {
             on_progress(self.position.min(self.length), self.length);
         }
         Ok(read)
     }
 }
 
-impl<S: Seek> Seek for Watched<S> {
+impl<S: Seek> Seek for Watched<'_, S> {
     fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
         self.position = self.stream.seek(position)?;
         Ok(self.position)

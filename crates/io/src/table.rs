@@ -163,7 +163,7 @@ impl Values {
     /// What was read, as a row for a builder.
     pub(crate) fn row(&self) -> Row<'_> {
         let Self { axes: position, radius, color, element, .. } = *self;
-        Row { position, radius, color, element, scalars: &self.scalars }
+        Row { position, radius, color, element, scalars: &self.scalars, ..Row::default() }
     }
 
     /// Takes the text of a column; `None` if it is not what it must be.

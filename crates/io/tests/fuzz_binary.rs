@@ -4,6 +4,8 @@
 #![expect(clippy::cast_possible_truncation, reason = "the numbers of tests are small")]
 #![expect(clippy::unwrap_used, reason = "a test may fail")]
 
+#[path = "common/chunks.rs"]
+mod chunks;
 mod common;
 
 use common::with_peak;
@@ -256,8 +258,9 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 
 /// Reads a file that has `length` bytes, and checks how much memory that took.
 fn read(options: &ReadOptions, bytes: &[u8], length: usize) -> Option<String> {
-    let (loaded, taken) = with_peak(|| options.read_bytes("a", bytes));
+    let (loaded, taken) = with_peak(|| options.read_bytes(chunks::NAME, bytes));
     assert!(taken <= BUFFERS + BYTES_PER_BYTE * length, "{taken} bytes for {length}");
+    chunks::check(options, bytes, &loaded);
     match loaded {
         Ok(loaded) => {
             assert!(loaded.scene.validate().is_ok());

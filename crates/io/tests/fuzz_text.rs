@@ -3,6 +3,8 @@
 
 #![expect(clippy::unwrap_used, reason = "this is a test")]
 
+#[path = "common/chunks.rs"]
+mod chunks;
 mod common;
 
 use common::with_peak;
@@ -161,8 +163,9 @@ fn gzip(file: &[u8]) -> Vec<u8> {
 
 /// Reads a file; checks what comes of it, and how much memory that took.
 fn read(options: &ReadOptions, bytes: &[u8], length: usize) {
-    let (result, taken) = with_peak(|| options.read_bytes("file", bytes));
+    let (result, taken) = with_peak(|| options.read_bytes(chunks::NAME, bytes));
     assert!(taken <= FIXED + 256 * length, "{taken} bytes for a file of {length}");
+    chunks::check(options, bytes, &result);
     if let Ok(loaded) = result {
         loaded.scene.validate().unwrap();
         let records = &loaded.scene.records;

@@ -1,9 +1,9 @@
 /*!
-Columns that come after the rows, in files that have all positions first.
+Columns that come, or change, after the rows.
 
-Such a column has a value for each row of the file, and those of skipped rows must be left out:
-[`Builder::keeps`] tells which. Radii go into the records one by one, without a copy; rows whose
-radius cannot be used leave all columns at the end of that.
+In files that have all positions first, a column has a value for each row of the file, and those of
+skipped rows must be left out: [`Builder::keeps`] tells which. Radii go into the records one by one,
+without a copy; rows whose radius cannot be used leave all columns at the end of that.
 */
 
 use super::{Builder, Precision, is_radius, to_f32, to_id};
@@ -26,6 +26,29 @@ impl Builder<'_> {
             (None, Ok(_)) => row < self.records.len() as u64,
             (_, Err(_)) => false,
         }
+    }
+
+    /// Makes all colors so far black, opaque ones.
+    pub(crate) fn blacken(&mut self) {
+        if let Some(survey) = &mut self.survey {
+            survey.black = survey.count;
+        }
+        // Chunks have black ones from the start, for as long as they should be.
+        if self.chunking.is_none() {
+            self.colors.iter_mut().flatten().for_each(|color| *color = [0, 0, 0, 255]);
+        }
+    }
+
+    /// Leaves out the colors, which tell nothing.
+    pub(crate) fn drop_colors(&mut self) {
+        self.colors = None;
+        self.survey.iter_mut().for_each(|survey| survey.has_colors = false);
+    }
+
+    /// Leaves out the elements, which tell nothing.
+    pub(crate) fn drop_elements(&mut self) {
+        self.elements = None;
+        self.survey.iter_mut().for_each(|survey| survey.has_elements = false);
     }
 
     /// Whether there are colors.

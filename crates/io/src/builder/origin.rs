@@ -31,7 +31,11 @@ pub(super) fn choose<I: Iterator<Item = [f64; 3]>>(
 ) -> DVec3 {
     let along = |axis: usize| inner_range(|| positions().map(|position| position[axis]), strays);
     let [x, y, z] = [along(0), along(1), along(2)];
-    let (min, max) = (DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1]));
+    of_box(DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1]))
+}
+
+/// The origin for a box without strays.
+pub(super) fn of_box(min: DVec3, max: DVec3) -> DVec3 {
     let (center, extent) = (min + (max - min) * 0.5, (max - min).max_element());
     // Points that coincide have no extent: their position itself is the best origin.
     if extent == 0.0 {

@@ -19,13 +19,14 @@ LAMMPS writes atoms in whatever order its processes have them. Records are order
 `id`, so that record k is the same atom in each frame that has the same atoms, and the id of a
 record is the rank of its atom. The order is found with 12 bytes an atom beside the records (16
 where rows were skipped), which are then moved in place. Atoms of the same id keep their order, with
-a warning.
+a warning. Records in chunks keep the order of the file: see the module `ids`.
 
 Rows with a wrong number of columns, or without a number where one must be, are skipped and counted.
 Fewer rows than atoms are an error.
 */
 
 mod cell;
+mod ids;
 mod layout;
 mod order;
 mod read;

@@ -1,10 +1,10 @@
 //! The reader: finds the frame, then reads its rows.
 
-use super::{cell::Cell, layout::Layout, order};
+use super::{cell::Cell, ids::Ids, layout::Layout};
 use crate::{
     ReadOptions,
     atoms::Atoms,
-    builder::Report,
+    builder::{Report, Row},
     error::{ErrorKind, Fault, Place, quote},
     input::Input,
     table::Role,
@@ -109,22 +109,21 @@ fn read_frame(
     let mut atoms = Atoms::of_table(options, &layout.table);
     let has_ids =
         layout.table.roles.iter().any(|role| matches!(role, Role::Id | Role::IdScalar(_)));
-    let mut ids = Vec::new();
+    let mut ids = Ids::new(atoms.builder(), has_ids);
     if lines.can_hold(frame.count, layout.table.roles.len()) {
         atoms.reserve(frame.count)?;
-        ids.reserve_exact(usize::try_from(frame.count).unwrap_or(0));
+        ids.reserve(frame.count);
     }
     for found in 0..frame.count {
         advance_to_row(lines, frame.count, found)?;
-        match layout.table.parse(lines.text(), &mut values) {
+        let parsed = layout.table.parse(lines.text(), &mut values);
+        let id = ids.push(values.id, parsed.is_ok());
+        match parsed {
             Ok(()) => {
                 values.axes = layout.position(values.axes);
-                atoms.push(values.row(), lines.place())?;
+                atoms.push(Row { id, ..values.row() }, lines.place())?;
             }
             Err((problem, text)) => atoms.skip(problem, lines.place(), || quote(text))?,
-        }
-        if has_ids {
-            ids.push(values.id);
         }
     }
     if layout.is_flat {
@@ -134,10 +133,8 @@ fn read_frame(
         let (place, text) = (lines.place(), quote(lines.text()));
         atoms.warn(format!("{place}, after the frame, was not read: it starts no item, {text}"));
     }
+    ids.tell(atoms.builder());
     let (mut scene, mut report) = atoms.finish()?;
-    if let Some((count, first)) = order::by_id(&mut scene, &ids) {
-        let what = "atoms have the same id as another one before them";
-        report.warnings.push(format!("{count} {what}; the first: {first}"));
-    }
+    ids.put_in_order(&mut scene, &mut report);
     Ok((scene, report))
 }

@@ -131,7 +131,7 @@ impl<'a> Points<'a> {
     /// The scene of all points.
     pub(super) fn finish(mut self) -> Result<(Scene, Report), Fault> {
         if self.header.color_at.is_some() && self.depth == Depth::Unknown {
-            *self.builder.colors_mut() = None;
+            self.builder.drop_colors();
             self.builder.warn("the colors are left out: all of them are 0");
         }
         self.check_box();
@@ -148,8 +148,7 @@ impl<'a> Points<'a> {
         let largest = channels.into_iter().fold(0, u16::max);
         if largest > 255 && self.depth != Depth::Sixteen {
             self.depth = Depth::Sixteen;
-            let stored = self.builder.colors_mut().iter_mut().flatten();
-            stored.for_each(|color| *color = [0, 0, 0, 255]);
+            self.builder.blacken();
         } else if largest > 0 && self.depth == Depth::Unknown {
             self.depth = Depth::Eight;
         }

@@ -54,8 +54,8 @@ impl Particles {
                         _ => f64::from(list.radius),
                     }),
                     color,
-                    element: 0,
                     scalars: &[intensity],
+                    ..Row::default()
                 };
                 builder.push(&row, Place::Byte(byte))?;
                 byte += stride as u64;

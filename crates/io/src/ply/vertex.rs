@@ -134,6 +134,7 @@ impl Vertex {
             color,
             element,
             scalars: &self.scalar_values,
+            ..Row::default()
         }
     }
 

@@ -10,7 +10,7 @@ use crate::{
     table::{Role, Table, Values, is_kind},
     text::{self, Lines, columns, number, whole},
 };
-use puncta_core::{Column, Scene};
+use puncta_core::Scene;
 
 /// What a file starts with.
 const FIRST: &str = "the first line must be the number of atoms, or a row of coordinates";
@@ -239,10 +239,9 @@ fn read_frame(
         return rest.finish();
     }
     rest.atoms.warn("the frame has no comment: its second line was taken for an atom");
+    rest.atoms.first_comes();
     rest.atoms.push_text(&second.line, second.place, &rest.table, &mut rest.values)?;
-    let (mut scene, report) = rest.finish()?;
-    put_last_first(&mut scene, count);
-    Ok((scene, report))
+    rest.finish()
 }
 
 /// Lines at the start of a frame that do not tell what its columns are.
@@ -318,26 +317,5 @@ impl<'o> Rows<'o> {
     fn finish(mut self) -> Result<(Scene, Report), Fault> {
         self.atoms.warn_of_colors(&self.values);
         self.atoms.finish()
-    }
-}
-
-/// Moves the row that was added last, of `count` rows, to the start, unless it was skipped.
-fn put_last_first(scene: &mut Scene, count: u64) {
-    let attributes = &mut scene.attributes;
-    if let Some(ids) = attributes.ids.as_mut().map(Column::to_mut) {
-        for id in ids.iter_mut() {
-            *id = if u64::from(*id) + 1 == count { 0 } else { *id + 1 };
-        }
-        if ids.last() != Some(&0) {
-            return;
-        }
-        ids.rotate_right(1);
-    }
-    scene.records.to_mut().rotate_right(1);
-    if let Some(elements) = &mut attributes.elements {
-        elements.to_mut().rotate_right(1);
-    }
-    for scalar in &mut attributes.scalars {
-        scalar.values.to_mut().rotate_right(1);
     }
 }
