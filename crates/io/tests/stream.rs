@@ -70,8 +70,8 @@ fn chunks_that_are_cleared_have_the_columns_of_their_records() {
     let mut source = options.stream(&path).unwrap();
     let (mut chunk, mut done) = (Scene::new(Vec::new()), 0);
     loop {
-        chunk.records.clear();
-        chunk.attributes.scalars.iter_mut().for_each(|scalar| scalar.values.clear());
+        chunk.records.to_mut().clear();
+        chunk.attributes.scalars.iter_mut().for_each(|scalar| scalar.values.to_mut().clear());
         let appended = source.append(&mut chunk, 777).unwrap();
         chunk.validate().unwrap();
         assert_eq!(chunk.origin, whole.origin);

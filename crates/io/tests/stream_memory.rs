@@ -109,7 +109,7 @@ fn stream(options: &ReadOptions, path: &Path) -> u64 {
     let mut source = options.stream(path).unwrap();
     let (mut count, mut chunk) = (0, Scene::new(Vec::new()));
     loop {
-        chunk.records.clear();
+        chunk.records.to_mut().clear();
         chunk.attributes = puncta_core::Attributes::default();
         let appended = source.append(&mut chunk, LIMIT).unwrap();
         chunk.validate().unwrap();
