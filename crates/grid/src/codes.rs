@@ -53,8 +53,9 @@ impl Layout {
     /// The code of a cell.
     pub(crate) fn encode(&self, place: [u32; 3]) -> u32 {
         let cell_bits = self.bits() - self.block_bits();
-        let (block, cell) = (self.digit(cell_bits..self.bits()), self.digit(0..cell_bits));
-        block.of(place) << cell_bits | cell.of(place)
+        // Without blocks, shifting by all 32 bits would be too far.
+        let block = self.block().of(place).checked_shl(cell_bits).unwrap_or(0);
+        block | self.digit(0..cell_bits).of(place)
     }
 
     /// The cell of a code.
@@ -72,6 +73,11 @@ impl Layout {
             *index |= take(bits) << below;
         }
         place
+    }
+
+    /// The bits that tell the block.
+    pub(crate) fn block(&self) -> Digit {
+        self.digit(self.bits() - self.block_bits()..self.bits())
     }
 
     /// Some bits of the codes, counted from the lowest: all of the block, or some of the cell.

@@ -1,24 +1,54 @@
 /*!
 The last step of the sort: the rows of one bucket, which fit into the cache, are sorted into bricks,
-and the statistics of each brick are taken on the way.
+and the bricks are measured while they are there.
 
-Within a bucket, rows are sorted by counting: each is copied to its place in a scratch buffer, then
-everything is copied back, brick by brick, which is when the bricks are measured. Where cells are
-many and rows are few, counting would mostly count empty cells; pairs of code and place are sorted by
-comparison then.
+Within a bucket, rows are sorted by counting: each is copied to its place in a scratch buffer, and
+everything is copied back. Where cells are many and rows are few, counting would mostly count empty
+cells; pairs of digit and place are sorted by comparison then. The columns follow one by one, by the
+places that were found for the records.
 */
 
 use crate::{
     codes::{Coder, Layout, RUN},
-    dispatch::{AHEAD, Kernel, lanes_of, prefetch, widest},
+    dispatch::{AHEAD, Kernel, prefetch, widest},
+    measure::{mean_color, measure},
     rows::{Lane, Rows},
 };
-use glam::Vec3;
-use puncta_core::{Aabb, Brick, Record};
+use puncta_core::{Brick, Record};
 use wide::f32x4;
 
 /// How many cells there may be for each row if they are counted.
 const CELLS_PER_ROW: usize = 16;
+
+/// How to sort a bucket.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct How {
+    pub(crate) coder: Coder,
+    pub(crate) layout: Layout,
+    /// The least sides of the cells.
+    pub(crate) sides: f32x4,
+    /// Whether rows keep the order of their ids, the first column, within a brick.
+    pub(crate) stable: bool,
+}
+
+/// A bucket that is to be sorted into bricks.
+pub(crate) struct Leaf<'a, R> {
+    pub(crate) rows: Rows<'a, R>,
+    /// The index of the first row.
+    pub(crate) start: u32,
+    /// The code of the first cell.
+    pub(crate) base: u32,
+    /// How many bits of the codes differ within the bucket.
+    pub(crate) bits: u32,
+}
+
+/// The bricks of a bucket, their codes, and their mean colors if rows have colors.
+#[derive(Debug, Default)]
+pub(crate) struct Bricks {
+    pub(crate) bricks: Vec<Brick>,
+    pub(crate) codes: Vec<u32>,
+    pub(crate) colors: Vec<[u8; 4]>,
+}
 
 /// Buffers that are used for one bucket after the other.
 pub(crate) struct Scratch<R> {
@@ -33,52 +63,6 @@ pub(crate) struct Scratch<R> {
     lengths: Vec<u32>,
 }
 
-/// A bucket that is to be sorted into bricks.
-pub(crate) struct Leaf<'a, R> {
-    pub(crate) rows: Rows<'a, R>,
-    /// The index of the first row.
-    pub(crate) start: u32,
-    /// The code of the first cell.
-    pub(crate) base: u32,
-    /// How many bits of the codes differ within the bucket.
-    pub(crate) bits: u32,
-}
-
-/// The bricks of a bucket, and their codes.
-#[derive(Debug, Default)]
-pub(crate) struct Bricks {
-    pub(crate) bricks: Vec<Brick>,
-    pub(crate) codes: Vec<u32>,
-}
-
-/// Sorts a bucket.
-struct Sort<'a, R> {
-    scratch: &'a mut Scratch<R>,
-    leaf: Leaf<'a, R>,
-    how: How,
-    found: &'a mut Bricks,
-}
-
-impl<R: Record> Kernel for Sort<'_, R> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        self.scratch.sort_leaf(self.leaf, self.how, self.found);
-    }
-}
-
-/// How to sort a bucket.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct How {
-    pub(crate) coder: Coder,
-    pub(crate) layout: Layout,
-    /// The least sides of the cells.
-    pub(crate) sides: f32x4,
-    /// Whether rows keep the order of their ids within a brick.
-    pub(crate) stable: bool,
-}
-
 impl<R: Record> Scratch<R> {
     pub(crate) fn new() -> Self {
         let (records, words, places) = (Vec::new(), Vec::new(), Vec::new());
@@ -86,46 +70,73 @@ impl<R: Record> Scratch<R> {
     }
 
     /// Sorts a bucket and measures its bricks.
-    pub(crate) fn sort(&mut self, leaf: Leaf<'_, R>, how: How, found: &mut Bricks) {
-        widest(Sort { scratch: self, leaf, how, found });
+    pub(crate) fn sort(&mut self, mut leaf: Leaf<'_, R>, how: How, found: &mut Bricks) {
+        widest(Sort { scratch: self, leaf: &mut leaf, how, found });
+        if how.stable {
+            self.settle(&mut leaf.rows);
+        }
+        if let Some(Lane::Words(colors)) =
+            leaf.rows.colors.and_then(|lane| leaf.rows.lanes.get(lane))
+        {
+            let mut rest = &colors[..];
+            found.colors.extend(self.lengths.iter().map(|&length| {
+                let (members, behind) = rest.split_at(length as usize);
+                rest = behind;
+                mean_color(members)
+            }));
+        }
     }
 
     #[inline(always)]
-    fn sort_leaf(&mut self, leaf: Leaf<'_, R>, how: How, found: &mut Bricks) {
-        let Leaf { rows, mut start, base, bits } = leaf;
+    fn sort_leaf(&mut self, leaf: &mut Leaf<'_, R>, how: How, found: &mut Bricks) {
         self.lengths.clear();
-        if let Some(first) = rows.records.first()
-            && self.records.len() < rows.records.len()
-        {
-            self.records.resize(rows.records.len(), *first);
-        }
-        let coder = how.coder.with(how.layout.digit(0..bits));
-        let is_sparse = rows.len() < (1 << bits) / CELLS_PER_ROW;
-        if is_sparse {
-            self.compare(rows.records, (&coder, base), &mut found.codes);
+        if leaf.bits == 0 {
+            self.lengths.push(u32::try_from(leaf.rows.len()).unwrap_or(u32::MAX));
+            found.codes.push(leaf.base);
         } else {
-            self.count(rows.records, (&coder, base), &mut found.codes);
+            let coder = how.coder.with(how.layout.digit(0..leaf.bits));
+            self.sort_rows(&mut leaf.rows, (&coder, leaf.base), &mut found.codes);
         }
-        let mut sorted = &self.records[..rows.len()];
-        rows.records.copy_from_slice(sorted);
+        let (mut rest, mut start) = (&leaf.rows.records[..], leaf.start);
         found.bricks.reserve(self.lengths.len());
         for &length in &self.lengths {
-            let (members, rest) = sorted.split_at(length as usize);
+            let (members, behind) = rest.split_at(length as usize);
             found.bricks.push(measure(members, start, how.sides));
-            sorted = rest;
-            start += length;
+            (rest, start) = (behind, start + length);
         }
-        for lane in rows.lanes {
+    }
+
+    /// Sorts rows by the digit of their codes, which are digits above `base`.
+    #[inline(always)]
+    fn sort_rows(
+        &mut self,
+        rows: &mut Rows<'_, R>,
+        (coder, base): (&Coder, u32),
+        codes: &mut Vec<u32>,
+    ) {
+        let count = rows.len();
+        if let Some(&first) = rows.records.first()
+            && self.records.len() < count
+        {
+            self.records.resize(count, first);
+        }
+        self.places.resize(count, 0);
+        if count < coder.digit().values() / CELLS_PER_ROW {
+            self.compare(rows.records, (coder, base), codes);
+        } else {
+            self.count(rows.records, (coder, base), codes);
+        }
+        rows.records.copy_from_slice(&self.records[..count]);
+        for lane in &mut rows.lanes {
             self.sort_lane(lane);
         }
     }
 
-    /// Finds the place of each row by counting.
+    /// Finds the place of each row by counting, and puts the records there.
     #[inline(always)]
     fn count(&mut self, records: &[R], (coder, base): (&Coder, u32), codes: &mut Vec<u32>) {
         self.counts.clear();
         self.counts.resize(coder.digit().values(), 0);
-        self.places.resize(records.len(), 0);
         let counts = &mut self.counts[..];
         for (records, places) in records.chunks(RUN).zip(self.places.chunks_mut(RUN)) {
             coder.code(records, places);
@@ -151,41 +162,41 @@ impl<R: Record> Scratch<R> {
         }
     }
 
-    /// Finds the place of each row by comparing codes.
+    /// Finds the place of each row by comparing digits, and puts the records there.
     #[inline(always)]
     fn compare(&mut self, records: &[R], (coder, base): (&Coder, u32), codes: &mut Vec<u32>) {
-        self.places.resize(records.len(), 0);
         coder.code(records, &mut self.places);
         self.pairs.clear();
-        let pair = |(index, &cell): (u64, &u32)| u64::from(cell) << 32 | index;
-        self.pairs.extend((0_u64..).zip(&self.places).map(pair));
+        self.pairs.extend((0..).zip(&self.places).map(|(row, &cell)| pair(cell, row)));
         self.pairs.sort_unstable();
         let mut last = None;
-        for (place, pair) in (0_u32..).zip(&self.pairs) {
-            let (cell, index) = ((pair >> 32) as u32, *pair as u32 as usize);
-            self.places[index] = place;
-            self.records[place as usize] = records[index];
-            if last != Some(cell) {
+        for (place, &pair) in (0_u32..).zip(&self.pairs) {
+            let (cell, row) = unpair(pair);
+            self.places[row as usize] = place;
+            self.records[place as usize] = records[row as usize];
+            if last == Some(cell) {
+                self.lengths.last_mut().into_iter().for_each(|length| *length += 1);
+            } else {
                 codes.push(base + cell);
-                self.lengths.push(0);
+                self.lengths.push(1);
                 last = Some(cell);
             }
-            self.lengths.last_mut().into_iter().for_each(|length| *length += 1);
         }
     }
 
     /// Moves the values of a column to the places of their rows.
-    fn sort_lane(&mut self, lane: Lane<'_>) {
-        self.words.resize(self.places.len().max(self.words.len()), [0; 4]);
+    fn sort_lane(&mut self, lane: &mut Lane<'_>) {
+        let places = &self.places[..];
+        self.words.resize(places.len().max(self.words.len()), [0; 4]);
         match lane {
             Lane::Words(words) => {
-                for (word, &place) in words.iter().zip(&self.places) {
+                for (word, &place) in words.iter().zip(places) {
                     self.words[place as usize] = *word;
                 }
                 words.copy_from_slice(&self.words[..words.len()]);
             }
             Lane::Bytes(bytes) => {
-                for (byte, &place) in bytes.iter().zip(&self.places) {
+                for (byte, &place) in bytes.iter().zip(places) {
                     self.words[place as usize][0] = *byte;
                 }
                 for (byte, word) in bytes.iter_mut().zip(&self.words) {
@@ -194,35 +205,54 @@ impl<R: Record> Scratch<R> {
             }
         }
     }
+
+    /// Sorts the rows of each brick by their ids.
+    fn settle(&mut self, rows: &mut Rows<'_, R>) {
+        let mut rest = rows.reborrow();
+        for length in std::mem::take(&mut self.lengths) {
+            let mut members = rest.split_off_front(length as usize);
+            let Some(Lane::Words(ids)) = members.lanes.first() else { return };
+            self.pairs.clear();
+            let ids = ids.iter().map(|&id| u32::from_ne_bytes(id));
+            self.pairs.extend((0..).zip(ids).map(|(row, id)| pair(id, row)));
+            self.pairs.sort_unstable();
+            self.places.resize(members.len(), 0);
+            for (place, &pair) in (0_u32..).zip(&self.pairs) {
+                self.places[unpair(pair).1 as usize] = place;
+            }
+            self.records.clear();
+            let sorted = self.pairs.iter().map(|&pair| members.records[unpair(pair).1 as usize]);
+            self.records.extend(sorted);
+            members.records.copy_from_slice(&self.records);
+            members.lanes.iter_mut().for_each(|lane| self.sort_lane(lane));
+            self.lengths.push(length);
+        }
+    }
 }
 
-/// The brick of these records, the first of which is record `start`.
-#[inline(always)]
-fn measure<R: Record>(members: &[R], start: u32, sides: f32x4) -> Brick {
-    let (mut least, mut most) = (f32x4::splat(f32::INFINITY), f32x4::splat(f32::NEG_INFINITY));
-    let mut volume = 0.0;
-    // Short sums in `f32` lose little; long ones are made of short ones.
-    for members in members.chunks(256) {
-        let mut cubes = f32x4::ZERO;
-        for record in members {
-            let lanes = lanes_of(record);
-            least = lanes.fast_min(least);
-            most = lanes.fast_max(most);
-            cubes += lanes * lanes * lanes;
-        }
-        volume += f64::from(cubes.to_array()[3]);
-    }
-    let [.., radius_max] = most.to_array();
-    let corner = |lanes: f32x4| Vec3::from_slice(&lanes.to_array());
-    let sides = sides.fast_max(most - least).fast_max(f32x4::splat(2.0 * radius_max));
-    let cell = corner(sides).as_dvec3().element_product();
-    let density = (4.0 / 3.0 * std::f64::consts::PI * volume / cell) as f32;
-    #[expect(clippy::cast_possible_truncation, reason = "there are no more than MAX_RECORDS")]
-    let end = start + members.len() as u32;
-    Brick {
-        records: start..end,
-        bounds: Aabb { min: corner(least), max: corner(most) },
-        radius_max,
-        density: if density.is_finite() { density } else { 0.0 },
+/// A key and a row, to be sorted by the key, then the row.
+fn pair(key: u32, row: u32) -> u64 {
+    u64::from(key) << 32 | u64::from(row)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the halves of a number")]
+fn unpair(pair: u64) -> (u32, u32) {
+    ((pair >> 32) as u32, pair as u32)
+}
+
+/// Sorts a bucket.
+struct Sort<'s, 'a, R> {
+    scratch: &'s mut Scratch<R>,
+    leaf: &'s mut Leaf<'a, R>,
+    how: How,
+    found: &'s mut Bricks,
+}
+
+impl<R: Record> Kernel for Sort<'_, '_, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.scratch.sort_leaf(self.leaf, self.how, self.found);
     }
 }

@@ -9,6 +9,8 @@ use std::mem;
 pub(crate) struct Rows<'a, R> {
     pub(crate) records: &'a mut [R],
     pub(crate) lanes: Vec<Lane<'a>>,
+    /// Which of the columns has the colors.
+    pub(crate) colors: Option<usize>,
 }
 
 /// A column: one value for each record, of a size that the sort knows.
@@ -21,18 +23,24 @@ pub(crate) enum Lane<'a> {
 impl<'a, R: Record> Rows<'a, R> {
     /// Records without columns.
     pub(crate) fn new(records: &'a mut [R]) -> Self {
-        Self { records, lanes: Vec::new() }
+        Self { records, lanes: Vec::new(), colors: None }
+    }
+
+    /// Records and their ids, without other columns.
+    pub(crate) fn with_ids(records: &'a mut [R], ids: &'a mut [u32]) -> Self {
+        Self { records, lanes: vec![Lane::Words(cast_slice_mut(ids))], colors: None }
     }
 
     /// The records of a scene and all their attributes, the ids first.
     pub(crate) fn of_scene(scene: &'a mut Scene<R>) -> Self {
         let Attributes { ids, colors, elements, scalars } = &mut scene.attributes;
+        let colors_at = colors.is_some().then_some(usize::from(ids.is_some()));
         let ids = ids.as_mut().map(|ids| Lane::Words(cast_slice_mut(ids.to_mut())));
         let colors = colors.as_mut().map(|colors| Lane::Words(colors.to_mut()));
         let elements = elements.as_mut().map(|elements| Lane::Bytes(elements.to_mut()));
         let scalars = scalars.iter_mut().map(|s| Lane::Words(cast_slice_mut(s.values.to_mut())));
         let lanes = ids.into_iter().chain(colors).chain(elements).chain(scalars).collect();
-        Self { records: scene.records.to_mut(), lanes }
+        Self { records: scene.records.to_mut(), lanes, colors: colors_at }
     }
 
     /// The first `count` rows; the others stay.
@@ -40,12 +48,17 @@ impl<'a, R: Record> Rows<'a, R> {
         Self {
             records: split_off_front(&mut self.records, count),
             lanes: self.lanes.iter_mut().map(|lane| lane.split_off_front(count)).collect(),
+            colors: self.colors,
         }
     }
 
     /// The same rows, borrowed for less long.
     pub(crate) fn reborrow(&mut self) -> Rows<'_, R> {
-        Rows { records: self.records, lanes: self.lanes.iter_mut().map(Lane::reborrow).collect() }
+        Rows {
+            records: self.records,
+            lanes: self.lanes.iter_mut().map(Lane::reborrow).collect(),
+            colors: self.colors,
+        }
     }
 
     pub(crate) fn len(&self) -> usize {

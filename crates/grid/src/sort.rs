@@ -7,7 +7,8 @@ that are in the cache.
 */
 
 use crate::{
-    census,
+    Cells, census,
+    codes::Layout,
     leaf::{Bricks, How, Leaf, Scratch},
     partition::partition,
     rows::Rows,
@@ -30,8 +31,14 @@ pub(crate) fn sort<R: Record>(mut rows: Rows<'_, R>, how: How, counts: &[u32]) -
     finish(rows, how, buckets)
 }
 
+/// Where the bits of codes are best for the sort of this many records.
+pub(crate) fn layout<R>(cells: &Cells, records: usize) -> Layout {
+    let bits = Layout::new(cells.dims(), 0).bits();
+    Layout::new(cells.dims(), split_bits::<R>(records, bits))
+}
+
 /// With how many bits to partition this many rows whose codes differ in `bits` bits.
-pub(crate) fn split_bits<R>(rows: usize, bits: u32) -> u32 {
+fn split_bits<R>(rows: usize, bits: u32) -> u32 {
     let buckets = (rows * size_of::<R>() / LEAF_BYTES).max(1).next_power_of_two().ilog2() + 1;
     // A bucket whose cells are too many for its counts is no good either.
     let least = bits.saturating_sub(14);
@@ -131,11 +138,21 @@ impl Ordered {
         self.waiting.push((index, bricks));
         while let Some(at) = self.waiting.iter().position(|(index, _)| *index == self.next) {
             let (_, mut bricks) = self.waiting.swap_remove(at);
+            // Not twice as much at once: in the end, the bricks are most of what the sort needs.
+            for_more(&mut self.all.bricks, bricks.bricks.len());
             self.all.bricks.append(&mut bricks.bricks);
             self.all.codes.append(&mut bricks.codes);
+            self.all.colors.append(&mut bricks.colors);
             self.spare.push(bricks);
             self.next += 1;
         }
         self.spare.pop().unwrap_or_default()
+    }
+}
+
+/// Makes room for `count` more values, and for a quarter more if that needs more room.
+fn for_more<T>(values: &mut Vec<T>, count: usize) {
+    if values.capacity() - values.len() < count {
+        values.reserve_exact(count.max(values.len() / 4));
     }
 }

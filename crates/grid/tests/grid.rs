@@ -3,7 +3,7 @@
 use glam::Vec3;
 use proptest::prelude::*;
 use puncta_core::{Record, Scalar, Scene, Sphere};
-use puncta_grid::{Error, Fit, Grid, GridConfig, Resolution};
+use puncta_grid::{Error, Fit, Grid, GridConfig, Order, Resolution};
 
 /// Coordinates of all sizes, many of them equal, and some at the edges of what `f32` can hold.
 fn coordinate() -> impl Strategy<Value = f32> {
@@ -31,7 +31,8 @@ fn resolution() -> impl Strategy<Value = Resolution> {
 
 fn config() -> impl Strategy<Value = GridConfig> {
     let fit = prop_oneof![Just(Fit::Robust), Just(Fit::Whole)];
-    (resolution(), fit).prop_map(|(resolution, fit)| GridConfig { resolution, fit })
+    let order = prop_oneof![Just(Order::Any), Just(Order::Stable)];
+    (resolution(), fit, order).prop_map(|(resolution, fit, order)| GridConfig { resolution, fit, order })
 }
 
 fn bits(sphere: &Sphere) -> [u32; 4] {

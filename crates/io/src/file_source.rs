@@ -101,7 +101,7 @@ impl ReadOptions {
 ///
 /// let mut chunk = Scene::new(Vec::new());
 /// assert_eq!(source.append(&mut chunk, 2)?, 2);
-/// assert_eq!(chunk.attributes.elements, Some(vec![8, 1]));
+/// assert_eq!(chunk.attributes.elements, Some(vec![8, 1].into()));
 /// // Fewer than asked for: this is the end.
 /// assert_eq!(source.append(&mut chunk, 2)?, 1);
 /// # Ok::<(), puncta_io::Error>(())
