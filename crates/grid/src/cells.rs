@@ -23,8 +23,9 @@ use glam::{DVec3, Vec3};
 use puncta_core::Aabb;
 use wide::f32x4;
 
-/// The largest number of cells. A cell costs nothing while it is empty, but its code must fit.
-pub(crate) const CELLS_MAX: u64 = 1 << 28;
+/// The largest number of cells. A cell costs nothing while it is empty, but its code must fit into 32
+/// bits, and each axis may waste nearly one of them.
+pub(crate) const CELLS_MAX: u64 = 1 << 30;
 
 /// The largest number of cells along an axis: from here on `f32` cannot tell them apart well.
 pub(crate) const AXIS_MAX: u64 = 1 << 20;
@@ -232,4 +233,67 @@ fn cells_along_longest(sides: DVec3, bricks: f64) -> f64 {
         a / bricks
     };
     if width > 0.0 { (a / width).round().max(1.0) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cells(min: [f32; 3], max: [f32; 3], resolution: Resolution) -> Result<Cells, Error> {
+        let inner = Aabb { min: min.into(), max: max.into() };
+        Cells::new(&Layout { inner, overflow: [[false; 2]; 3] }, 1000, resolution)
+    }
+
+    #[test]
+    fn faces_are_the_first_numbers_of_their_cells() {
+        for (low, high) in
+            [(0.0, 1.0), (-3.7, 11.3), (1e7, 1e7 + 64.0), (-1e-40, 1e-39), (-3e38, 3e38)]
+        {
+            let cells = cells([low; 3], [high; 3], Resolution::LongestSide(10)).unwrap();
+            let mut last = low;
+            for i in 0..cells.dims()[0] {
+                let bounds = cells.bounds([i, 0, 0]);
+                assert_eq!(bounds.min.x, last, "cells leave no gap");
+                last = bounds.max.x;
+                if bounds.min.x < bounds.max.x {
+                    assert_eq!(cells.place(bounds.min)[0], i);
+                    assert_eq!(cells.place(bounds.max.map(f32::next_down))[0], i);
+                }
+            }
+            assert_eq!(last, high.next_up());
+        }
+    }
+
+    #[test]
+    fn the_longest_side_has_the_cells_asked_for() {
+        for count in 1..400 {
+            let cells =
+                cells([-0.125; 3], [0.875, 0.375, -0.125], Resolution::LongestSide(count)).unwrap();
+            assert_eq!(cells.dims(), [count, count.div_ceil(2), 1]);
+        }
+    }
+
+    #[test]
+    fn sides_of_any_ratio_get_about_the_cells_asked_for() {
+        for sides in [[1.0, 1.0, 1.0], [9.0, 1.0, 0.001], [100.0, 3.0, 2.0], [1.0, 0.0, 0.0]] {
+            let cells = cells([0.0; 3], sides, Resolution::RecordsPerBrick(2)).unwrap();
+            assert!((250..1300).contains(&cells.count()), "{sides:?}: {:?}", cells.dims());
+        }
+    }
+
+    #[test]
+    fn resolutions_beyond_the_limits_are_refused() {
+        let cube = |resolution| cells([0.0; 3], [1.0; 3], resolution).map(|cells| cells.dims());
+        assert_eq!(cube(Resolution::LongestSide(1024)), Ok([1024; 3]));
+        assert_eq!(cube(Resolution::LongestSide(0)), Err(Error::Resolution { dims: [0; 3] }));
+        assert_eq!(cube(Resolution::LongestSide(1025)), Err(Error::Resolution { dims: [1025; 3] }));
+        let line = |count| cells([0.0; 3], [1.0, 0.0, 0.0], Resolution::LongestSide(count));
+        assert!(line(1 << 20).is_ok() && line((1 << 20) + 1).is_err());
+        for width in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-40] {
+            let error = cube(Resolution::Width(width)).unwrap_err();
+            assert!(matches!(error, Error::Width { .. }), "{error}");
+        }
+        let error = cube(Resolution::Width(1e-30)).unwrap_err();
+        assert!(matches!(error, Error::Resolution { .. }), "{error}");
+    }
 }

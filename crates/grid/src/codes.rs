@@ -193,3 +193,46 @@ impl Coder {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_code_is_made_of_its_digits(
+            dims in [1_u32..2000, 1_u32..2000, 1_u32..200],
+            block_bits in 0_u32..14,
+            cut in 0_u32..30,
+            seed in any::<u32>(),
+        ) {
+            let layout = Layout::new(dims, block_bits);
+            prop_assert!(layout.block_bits() == block_bits.min(layout.bits()));
+            let place = [seed % dims[0], (seed >> 8) % dims[1], (seed >> 20) % dims[2]];
+            let code = layout.encode(place);
+            prop_assert_eq!(layout.decode(code), place);
+            let cell_bits = layout.bits() - layout.block_bits();
+            prop_assert_eq!(layout.block().of(place), code.checked_shr(cell_bits).unwrap_or(0));
+            let cut = cut.min(cell_bits);
+            let cell = u64::from(code) & ((1 << cell_bits) - 1);
+            prop_assert_eq!(u64::from(layout.digit(0..cut).of(place)), cell & ((1 << cut) - 1));
+            prop_assert_eq!(u64::from(layout.digit(cut..cell_bits).of(place)), cell >> cut);
+        }
+    }
+
+    #[test]
+    fn codes_differ() {
+        for (dims, bits) in [([7, 5, 3], 4), ([16, 1, 1], 2), ([1, 1, 1], 3), ([2, 9, 4], 0)] {
+            let layout = Layout::new(dims, bits);
+            let mut seen = std::collections::BTreeSet::new();
+            for x in 0..dims[0] {
+                for y in 0..dims[1] {
+                    seen.extend((0..dims[2]).map(|z| layout.encode([x, y, z])));
+                }
+            }
+            assert_eq!(seen.len() as u32, dims[0] * dims[1] * dims[2]);
+            assert!(seen.last().is_none_or(|&last| u64::from(last) < 1 << layout.bits()));
+        }
+    }
+}

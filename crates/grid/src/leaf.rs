@@ -13,18 +13,21 @@ use crate::{
     dispatch::{AHEAD, Kernel, prefetch, widest},
     measure::{mean_color, measure},
     rows::{Lane, Rows},
+    sort::LeafRows,
 };
 use puncta_core::{Brick, Record};
 use wide::f32x4;
 
 /// How many cells there may be for each row if they are counted.
-const CELLS_PER_ROW: usize = 16;
+const CELLS_PER_ROW: usize = 4;
 
 /// How to sort a bucket.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct How {
     pub(crate) coder: Coder,
     pub(crate) layout: Layout,
+    /// How large buckets may be.
+    pub(crate) leaf: LeafRows,
     /// The least sides of the cells.
     pub(crate) sides: f32x4,
     /// Whether rows keep the order of their ids, the first column, within a brick.

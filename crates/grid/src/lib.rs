@@ -180,7 +180,8 @@ impl Grid {
             place.overflow = overflow;
         };
         let stable = config.order == Order::Stable;
-        let how = How { coder, layout, sides: cells.sides(), stable };
+        let leaf = sort::LeafRows::new::<R>(&cells, rows.len());
+        let how = How { coder, layout, leaf, sides: cells.sides(), stable };
         let found = sort::sort(rows, how, &census.counts);
         let colors = colors.map(|_| found.colors);
         Ok(Self { cells, layout, bricks: found.bricks, codes: found.codes, colors })

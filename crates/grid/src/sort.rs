@@ -16,8 +16,8 @@ use crate::{
 use puncta_core::Record;
 use std::{ops::Range, sync::Mutex};
 
-/// How many bytes of records a bucket should have to be sorted in the cache.
-const LEAF_BYTES: usize = 1 << 19;
+/// How many bytes a row needs in the buffers beside its record.
+const SCRATCH_BYTES: usize = 24;
 
 /// The largest number of buckets a partition is made of, as a power of two: more would not fit the
 /// translation buffers of processors.
@@ -31,15 +31,37 @@ pub(crate) fn sort<R: Record>(mut rows: Rows<'_, R>, how: How, counts: &[u32]) -
     finish(rows, how, buckets)
 }
 
+/// How many rows a bucket may have to be sorted in the cache: what is best, and what is the most.
+///
+/// The buffers of a thread are as large as a bucket. So these numbers must not be larger than the
+/// bricks justify. They do not depend on the number of threads: the order of rows depends on them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LeafRows {
+    best: usize,
+    most: usize,
+}
+
+impl LeafRows {
+    pub(crate) fn new<R>(cells: &Cells, records: usize) -> Self {
+        let bytes = (96 << 10) + 32 * cells.count().min(records);
+        let rows = |bytes: usize| (bytes / (size_of::<R>() + SCRATCH_BYTES)).max(64);
+        Self { best: rows(bytes.min(768 << 10)), most: rows(bytes.min(5 << 19)) }
+    }
+}
+
 /// Where the bits of codes are best for the sort of this many records.
 pub(crate) fn layout<R>(cells: &Cells, records: usize) -> Layout {
     let bits = Layout::new(cells.dims(), 0).bits();
-    Layout::new(cells.dims(), split_bits::<R>(records, bits))
+    // Codes are more than cells: some blocks are cut by the ends of the grid.
+    let codes = records as f64 * (1_u64 << bits) as f64 / cells.count().max(1) as f64;
+    let leaf = LeafRows::new::<R>(cells, records);
+    Layout::new(cells.dims(), split_bits(codes as usize, leaf, bits))
 }
 
 /// With how many bits to partition this many rows whose codes differ in `bits` bits.
-fn split_bits<R>(rows: usize, bits: u32) -> u32 {
-    let buckets = (rows * size_of::<R>() / LEAF_BYTES).max(1).next_power_of_two().ilog2() + 1;
+fn split_bits(rows: usize, leaf: LeafRows, bits: u32) -> u32 {
+    // A bucket of the mean number of rows is well below the limit, as some have more.
+    let buckets = (rows * 4 / (leaf.best * 3)).max(1).next_power_of_two().ilog2();
     // A bucket whose cells are too many for its counts is no good either.
     let least = bits.saturating_sub(14);
     buckets.max(least).min(BUCKETS_MAX).min(bits)
@@ -83,12 +105,11 @@ fn split<R: Record>(rows: &mut Rows<'_, R>, how: How, plan: Split<'_>, buckets: 
             continue;
         }
         let (base, bits) = (plan.base + (bucket << plan.bits), plan.bits);
-        let is_small = inside.len() * size_of::<R>() <= 3 * LEAF_BYTES;
-        if is_small || bits == 0 {
+        if inside.len() <= how.leaf.most || bits == 0 {
             buckets.push(Bucket { rows: home.end - home.start, base, bits });
             continue;
         }
-        let rest_bits = bits - split_bits::<R>(inside.len(), bits);
+        let rest_bits = bits - split_bits(inside.len(), how.leaf, bits).max(1);
         let how = How { coder: how.coder.with(how.layout.digit(rest_bits..bits)), ..how };
         let counts = &census::count(inside.records, &how.coder);
         split(&mut inside, how, Split { counts, base, bits: rest_bits }, buckets);

@@ -32,7 +32,11 @@ fn resolution() -> impl Strategy<Value = Resolution> {
 fn config() -> impl Strategy<Value = GridConfig> {
     let fit = prop_oneof![Just(Fit::Robust), Just(Fit::Whole)];
     let order = prop_oneof![Just(Order::Any), Just(Order::Stable)];
-    (resolution(), fit, order).prop_map(|(resolution, fit, order)| GridConfig { resolution, fit, order })
+    (resolution(), fit, order).prop_map(|(resolution, fit, order)| GridConfig {
+        resolution,
+        fit,
+        order,
+    })
 }
 
 fn bits(sphere: &Sphere) -> [u32; 4] {
