@@ -55,7 +55,7 @@ pub(crate) fn partition<R: Record>(rows: &mut Rows<'_, R>, coder: &Coder, homes:
         if left == 0 {
             return;
         }
-        let is_last = round >= ROUNDS || left < STRIPE_ROWS;
+        let is_last = round >= ROUNDS || left < STRIPE_ROWS / 16;
         let stripes = if is_last { 1 } else { (left / STRIPE_ROWS).clamp(4, STRIPES_MAX) };
         let shared = Shared::new(rows);
         let stuck: Vec<Vec<Zone>> = (0..stripes)

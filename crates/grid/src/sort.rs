@@ -14,7 +14,11 @@ use crate::{
     rows::Rows,
 };
 use puncta_core::Record;
-use std::{ops::Range, sync::Mutex};
+use std::{
+    collections::BTreeMap,
+    ops::Range,
+    sync::{Mutex, MutexGuard, PoisonError},
+};
 
 /// How many bytes a row needs in the buffers beside its record.
 const SCRATCH_BYTES: usize = 24;
@@ -125,54 +129,93 @@ fn finish<R: Record>(mut rows: Rows<'_, R>, how: How, buckets: Vec<Bucket>) -> B
         start += count;
         (index, leaf)
     });
-    let (leaves, done) = (Mutex::new(leaves), Mutex::new(Ordered::default()));
+    let (leaves, found) = (Mutex::new(leaves), Ordered::default());
     rayon::scope(|scope| {
         for _ in 0..rayon::current_num_threads() {
             scope.spawn(|_| {
                 let (mut scratch, mut bricks) = (Scratch::new(), Bricks::default());
-                loop {
-                    let next = leaves.lock().ok().and_then(|mut leaves| leaves.next());
-                    let Some((index, leaf)) = next else { break };
+                while let Some((index, leaf)) = next(&leaves) {
                     scratch.sort(leaf, how, &mut bricks);
-                    if let Ok(mut done) = done.lock() {
-                        bricks = done.add(index, bricks);
-                    }
+                    bricks = found.add(index, bricks);
                 }
             });
         }
     });
-    done.into_inner().map(|done| done.all).unwrap_or_default()
+    found.into_all()
 }
 
-/// Bricks of buckets that are ready in any order, and appended in theirs.
+/// The next value of an iterator that threads share.
+fn next<I: Iterator>(iterator: &Mutex<I>) -> Option<I::Item> {
+    iterator.lock().unwrap_or_else(PoisonError::into_inner).next()
+}
+
+/// Bricks of buckets that are ready in any order, and are appended in theirs.
+///
+/// Appending takes a while, as the memory is new. Whoever has bricks ready while another thread
+/// appends leaves them to that one and goes on.
 #[derive(Default)]
 struct Ordered {
-    all: Bricks,
+    ready: Mutex<Ready>,
+    all: Mutex<Bricks>,
+}
+
+/// Bricks that wait to be appended.
+#[derive(Default)]
+struct Ready {
+    waiting: BTreeMap<usize, Bricks>,
+    /// The index of the bucket whose bricks are appended next.
     next: usize,
-    waiting: Vec<(usize, Bricks)>,
     spare: Vec<Bricks>,
 }
 
 impl Ordered {
     /// Adds the bricks of a bucket; gives buffers for those of another.
-    fn add(&mut self, index: usize, bricks: Bricks) -> Bricks {
-        self.waiting.push((index, bricks));
-        while let Some(at) = self.waiting.iter().position(|(index, _)| *index == self.next) {
-            let (_, mut bricks) = self.waiting.swap_remove(at);
-            // Not twice as much at once: in the end, the bricks are most of what the sort needs.
-            for_more(&mut self.all.bricks, bricks.bricks.len());
-            self.all.bricks.append(&mut bricks.bricks);
-            self.all.codes.append(&mut bricks.codes);
-            self.all.colors.append(&mut bricks.colors);
-            self.spare.push(bricks);
-            self.next += 1;
+    fn add(&self, index: usize, bricks: Bricks) -> Bricks {
+        self.ready().waiting.insert(index, bricks);
+        if let Ok(mut all) = self.all.try_lock() {
+            loop {
+                let next = self.ready().take();
+                let Some(mut bricks) = next else { break };
+                append(&mut all, &mut bricks);
+                self.ready().spare.push(bricks);
+            }
         }
-        self.spare.pop().unwrap_or_default()
+        self.ready().spare.pop().unwrap_or_default()
+    }
+
+    fn ready(&self) -> MutexGuard<'_, Ready> {
+        self.ready.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// All bricks, in the order of their buckets.
+    fn into_all(self) -> Bricks {
+        let mut all = self.all.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let ready = self.ready.into_inner().unwrap_or_else(PoisonError::into_inner);
+        ready.waiting.into_values().for_each(|mut bricks| append(&mut all, &mut bricks));
+        all
     }
 }
 
+impl Ready {
+    /// The bricks that come next, if they are ready.
+    fn take(&mut self) -> Option<Bricks> {
+        let bricks = self.waiting.remove(&self.next)?;
+        self.next += 1;
+        Some(bricks)
+    }
+}
+
+fn append(all: &mut Bricks, bricks: &mut Bricks) {
+    // Not twice as much at once: in the end, the bricks are most of what the sort needs.
+    make_room(&mut all.bricks, bricks.bricks.len());
+    all.bricks.append(&mut bricks.bricks);
+    make_room(&mut all.codes, bricks.codes.len());
+    all.codes.append(&mut bricks.codes);
+    all.colors.append(&mut bricks.colors);
+}
+
 /// Makes room for `count` more values, and for a quarter more if that needs more room.
-fn for_more<T>(values: &mut Vec<T>, count: usize) {
+fn make_room<T>(values: &mut Vec<T>, count: usize) {
     if values.capacity() - values.len() < count {
         values.reserve_exact(count.max(values.len() / 4));
     }

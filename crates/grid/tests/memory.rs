@@ -79,9 +79,6 @@ fn memory_grows_with_bricks_and_threads_and_not_with_records() {
                 let (peak, bricks) =
                     measure(threads, || Grid::sort(&mut records, &config).unwrap());
                 let allowed = 64 * bricks * threads + (1 << 20);
-                    "{count} {clustered} {resolution:?} {threads}: {peak} of {allowed}, {:.2}",
-                    peak as f64 / allowed as f64
-                );
                 assert!(
                     peak <= allowed,
                     "{count} records, {bricks} bricks, {threads} threads: {peak} bytes are more than {allowed}"
