@@ -123,6 +123,18 @@ impl Cells {
         1.0 / self.scale
     }
 
+    /// Where the cells start: see the formula in [`Self::place`].
+    #[must_use]
+    pub const fn corner(&self) -> Vec3 {
+        self.corner
+    }
+
+    /// The number of cells per unit of length: see the formula in [`Self::place`].
+    #[must_use]
+    pub const fn scale(&self) -> f32 {
+        self.scale
+    }
+
     /// The box of a cell; positions on its upper faces belong to the next cell.
     ///
     /// Outermost cells reach to the ends of the data.
@@ -138,6 +150,9 @@ impl Cells {
     }
 
     /// The cell that holds a position; one outside the box of the data is held by an outermost cell.
+    ///
+    /// Along each axis it is `(position - corner) * scale`, in `f32`, rounded down and clamped to the
+    /// cells that there are.
     ///
     /// # Panics
     ///

@@ -31,8 +31,8 @@ pub enum Fit {
 /// The least and the largest number of records that are sampled, where there are enough.
 const SAMPLES: [usize; 2] = [1 << 12, 1 << 15];
 
-/// Which share of the sample may be left out at either end.
-const TAIL: f64 = 1.0 / 200.0;
+/// One of how many sampled values may be left out at either end.
+const TAIL: usize = 200;
 
 /// How far the inner box may go beyond the middle of the sample, in parts of its extent.
 const MARGIN: f64 = 0.5;
@@ -68,23 +68,24 @@ pub(crate) fn whole(bounds: Aabb) -> Layout {
 fn place(i: usize, count: usize, records: usize) -> usize {
     let at = |i: usize| (i as u128 * records as u128 / count as u128) as usize;
     let (start, end) = (at(i), at(i + 1));
-    // The multiplier is that of Knuth's multiplicative hashing.
-    let random = (i as u32).wrapping_mul(2_654_435_769) as usize;
+    // Fibonacci hashing: Knuth, *The Art of Computer Programming* 3, section 6.4.
+    let random = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33;
+    let random = random as usize;
     start + random % (end - start).max(1)
 }
 
 /// From where to where the values go, strays left out.
 fn middle(values: &mut [f32]) -> [f32; 2] {
     let Some(last) = values.len().checked_sub(1) else { return [0.0; 2] };
-    let tail = (values.len() as f64 * TAIL) as usize;
+    let tail = values.len() / TAIL;
     let low = *values.select_nth_unstable_by(tail, f32::total_cmp).1;
     let least = values[..=tail].iter().copied().fold(low, f32::min);
     let high = *values.select_nth_unstable_by(last - tail, f32::total_cmp).1;
     let most = values[last - tail..].iter().copied().fold(high, f32::max);
-    let margin = (f64::from(high) - f64::from(low)) * MARGIN;
-    let clamp = |value: f32| {
-        f64::from(value).clamp(f64::from(low) - margin, f64::from(high) + margin) as f32
-    };
+    let (low, high) = (f64::from(low), f64::from(high));
+    let margin = (high - low) * MARGIN;
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+    let clamp = |value: f32| f64::from(value).clamp(low - margin, high + margin) as f32;
     [clamp(least), clamp(most)]
 }
 

@@ -27,10 +27,10 @@ use crate::{
 };
 use puncta_core::Record;
 use rayon::prelude::*;
-use std::{marker::PhantomData, mem, ops::Range};
+use std::{iter, marker::PhantomData, ops::Range, ptr};
 
 /// How many records are on their way at once.
-const HANDS: usize = 32;
+const HANDS: u32 = 32;
 
 /// How many bytes ahead of the record at hand the next ones of its bucket are asked for.
 const AHEAD: usize = 64;
@@ -162,19 +162,19 @@ impl<'a, R: Record> Shared<'a, R> {
     /// As [`Self::sort_stripe`].
     #[inline(always)]
     unsafe fn sort_parts<const LANES: bool>(&self, coder: &Coder, parts: &mut [Zone]) {
-        let mut held_lanes = vec![[0; 4]; self.lanes.len() * HANDS];
-        let mut digits = [0; HANDS];
+        let mut held_lanes = vec![[0; 4]; self.lanes.len() * HANDS as usize];
+        let mut digits = [0; HANDS as usize];
         for here in 0..parts.len() {
             // The hands take their rows from the places `start..start + hands`, which are free.
             let Range { mut start, mut end } = parts[here];
-            let mut hands = (end - start).min(HANDS as u32);
+            let mut hands = (end - start).min(HANDS);
             if hands == 0 {
                 continue;
             }
             // SAFETY: all places below lie in parts: `start..end` and `parts[there]` only shrink,
             // and only places in them are accessed. There is a part for each digit.
             unsafe {
-                let mut held = [*self.records.add(start as usize); HANDS];
+                let mut held = [*self.records.add(start as usize); HANDS as usize];
                 for hand in 0..hands {
                     let (record, lanes) = self.hand::<LANES>(&mut held, &mut held_lanes, hand);
                     self.exchange(record, lanes, start + hand);
@@ -229,7 +229,7 @@ impl<'a, R: Record> Shared<'a, R> {
     #[inline(always)]
     fn hand<'h, const LANES: bool>(
         &self,
-        held: &'h mut [R; HANDS],
+        held: &'h mut [R; HANDS as usize],
         held_lanes: &'h mut [[u8; 4]],
         hand: u32,
     ) -> (&'h mut R, &'h mut [[u8; 4]]) {
@@ -247,12 +247,12 @@ impl<'a, R: Record> Shared<'a, R> {
     unsafe fn exchange(&self, record: &mut R, lanes: &mut [[u8; 4]], at: u32) {
         // SAFETY: as promised to this function.
         unsafe {
-            mem::swap(record, &mut *self.records.add(at as usize));
+            ptr::swap(record, self.records.add(at as usize));
             for (lane, value) in self.lanes.iter().zip(lanes) {
                 match *lane {
-                    SharedLane::Words(words) => mem::swap(value, &mut *words.add(at as usize)),
+                    SharedLane::Words(words) => ptr::swap(value, words.add(at as usize)),
                     SharedLane::Bytes(bytes) => {
-                        mem::swap(&mut value[0], &mut *bytes.add(at as usize));
+                        ptr::swap(&raw mut value[0], bytes.add(at as usize));
                     }
                 }
             }
@@ -282,7 +282,7 @@ impl<'a, R: Record> Shared<'a, R> {
         let target = zone.end - count..zone.end;
         let movers = stuck.iter().cloned().flatten().take_while(|&at| at < target.start);
         let mut free = target.start;
-        let mut gaps = stuck.iter().cloned().chain([zone.end..zone.end]);
+        let mut gaps = stuck.iter().cloned().chain(iter::once(zone.end..zone.end));
         let mut gap = 0..0;
         for mover in movers {
             while gap.is_empty() {

@@ -49,7 +49,7 @@ impl LeafRows {
     pub(crate) fn new<R>(cells: &Cells, records: usize) -> Self {
         let bytes = (96 << 10) + 32 * cells.count().min(records);
         let rows = |bytes: usize| (bytes / (size_of::<R>() + SCRATCH_BYTES)).max(64);
-        Self { best: rows(bytes.min(768 << 10)), most: rows(bytes.min(5 << 19)) }
+        Self { best: rows(bytes.min(3 << 19)), most: rows(bytes.min(5 << 19)) }
     }
 }
 
@@ -57,15 +57,16 @@ impl LeafRows {
 pub(crate) fn layout<R>(cells: &Cells, records: usize) -> Layout {
     let bits = Layout::new(cells.dims(), 0).bits();
     // Codes are more than cells: some blocks are cut by the ends of the grid.
-    let codes = records as f64 * (1_u64 << bits) as f64 / cells.count().max(1) as f64;
+    let codes = (records as u128) << bits;
+    let rows = usize::try_from(codes / cells.count().max(1) as u128).unwrap_or(usize::MAX / 4);
     let leaf = LeafRows::new::<R>(cells, records);
-    Layout::new(cells.dims(), split_bits(codes as usize, leaf, bits))
+    Layout::new(cells.dims(), split_bits(rows, leaf, bits))
 }
 
 /// With how many bits to partition this many rows whose codes differ in `bits` bits.
 fn split_bits(rows: usize, leaf: LeafRows, bits: u32) -> u32 {
     // A bucket of the mean number of rows is well below the limit, as some have more.
-    let buckets = (rows * 4 / (leaf.best * 3)).max(1).next_power_of_two().ilog2();
+    let buckets = (rows / (leaf.best * 3 / 4)).max(1).next_power_of_two().ilog2();
     // A bucket whose cells are too many for its counts is no good either.
     let least = bits.saturating_sub(14);
     buckets.max(least).min(BUCKETS_MAX).min(bits)

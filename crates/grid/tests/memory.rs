@@ -68,7 +68,6 @@ fn measure(threads: usize, sort: impl FnOnce() -> Grid + Send) -> (usize, usize)
     (PEAK.load(Relaxed).saturating_sub(before), bricks)
 }
 
-#[test]
 fn memory_grows_with_bricks_and_threads_and_not_with_records() {
     for (count, clustered) in [(100_000, 0), (1_500_000, 0), (1_500_000, 1_000_000), (4_000_000, 0)]
     {
@@ -88,11 +87,17 @@ fn memory_grows_with_bricks_and_threads_and_not_with_records() {
     }
 }
 
-#[test]
 fn columns_need_no_more_than_a_buffer() {
     let mut scene = Scene::new(cube(1_000_000, 0));
     scene.keep_order();
     let config = GridConfig::longest_side(20);
     let (peak, bricks) = measure(2, || Grid::sort_scene(&mut scene, &config).unwrap());
     assert!(peak <= 128 * bricks + (1 << 20), "{peak} bytes for {bricks} bricks");
+}
+
+/// One after the other: all threads are counted.
+#[test]
+fn memory_is_bounded() {
+    memory_grows_with_bricks_and_threads_and_not_with_records();
+    columns_need_no_more_than_a_buffer();
 }
