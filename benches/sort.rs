@@ -2,8 +2,6 @@
 //!
 //! `cargo bench --bench sort`. The example `bench_sort` compares with other sorts, in one run.
 
-#![expect(missing_docs, reason = "the macros of criterion make undocumented functions")]
-
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use puncta::{Grid, GridConfig, Order, Scene, Source, Sphere, io::synthetic::Generator};
 use std::hint::black_box;

@@ -231,7 +231,7 @@ mod tests {
                     seen.extend((0..dims[2]).map(|z| layout.encode([x, y, z])));
                 }
             }
-            assert_eq!(seen.len() as u32, dims[0] * dims[1] * dims[2]);
+            assert_eq!(seen.len(), dims.iter().map(|&dim| dim as usize).product::<usize>());
             assert!(seen.last().is_none_or(|&last| u64::from(last) < 1 << layout.bits()));
         }
     }

@@ -29,7 +29,7 @@ pub enum Fit {
 }
 
 /// The least and the largest number of records that are sampled, where there are enough.
-const SAMPLES: [usize; 2] = [1 << 12, 1 << 15];
+const SAMPLES: [usize; 2] = [1 << 12, 1 << 13];
 
 /// One of how many sampled values may be left out at either end.
 const TAIL: usize = 200;

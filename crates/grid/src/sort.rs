@@ -20,6 +20,9 @@ use std::{
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
+/// Buckets of more rows than this are split by all threads together.
+const SHARED_ROWS: usize = 1 << 20;
+
 /// How many bytes a row needs in the buffers beside its record.
 const SCRATCH_BYTES: usize = 24;
 
@@ -31,7 +34,7 @@ const BUCKETS_MAX: u32 = 11;
 pub(crate) fn sort<R: Record>(mut rows: Rows<'_, R>, how: How, counts: &[u32]) -> Bricks {
     let mut buckets = Vec::new();
     let bits = how.layout.bits() - how.layout.block_bits();
-    split(&mut rows, how, Split { counts, base: 0, bits }, &mut buckets);
+    Split { counts, base: 0, bits }.run(&mut rows, how, &mut buckets);
     finish(rows, how, buckets)
 }
 
@@ -89,36 +92,75 @@ struct Split<'a> {
     bits: u32,
 }
 
-/// Partitions rows into buckets, and those that are too large again.
-fn split<R: Record>(rows: &mut Rows<'_, R>, how: How, plan: Split<'_>, buckets: &mut Vec<Bucket>) {
-    let mut start = 0;
-    let homes: Vec<Range<u32>> = plan
-        .counts
-        .iter()
-        .map(|&count| {
+impl Split<'_> {
+    /// Partitions rows into buckets, and those that are very large again.
+    fn run<R: Record>(&self, rows: &mut Rows<'_, R>, how: How, buckets: &mut Vec<Bucket>) {
+        let mut rest = self.partition(rows, how);
+        for (base, &count) in self.bases().zip(self.counts).filter(|&(_, &count)| count > 0) {
+            let mut inside = rest.split_off_front(count as usize);
+            if inside.len() > SHARED_ROWS && self.bits > 0 {
+                again(&mut inside, how, (base, self.bits), |rows, how, split| {
+                    split.run(rows, how, buckets);
+                });
+            } else {
+                buckets.push(Bucket { rows: count, base, bits: self.bits });
+            }
+        }
+    }
+
+    /// Moves rows into buckets.
+    fn partition<'r, R: Record>(&self, rows: &'r mut Rows<'_, R>, how: How) -> Rows<'r, R> {
+        let homes = self.counts.iter().scan(0, |start: &mut u32, &count| {
+            *start += count;
+            Some(*start - count..*start)
+        });
+        let homes: Vec<Range<u32>> = homes.collect();
+        if homes.len() > 1 {
+            partition(rows, &how.coder, &homes);
+        }
+        rows.reborrow()
+    }
+
+    /// The code where each bucket starts.
+    fn bases(&self) -> impl Iterator<Item = u32> + use<> {
+        let (base, bits) = (self.base, self.bits);
+        (0_u32..).map(move |bucket| base + (bucket << bits))
+    }
+}
+
+/// Splits a bucket by some more of the `bits` bits that its codes differ in.
+fn again<R: Record>(
+    rows: &mut Rows<'_, R>,
+    how: How,
+    (base, bits): (u32, u32),
+    split: impl FnOnce(&mut Rows<'_, R>, How, &Split<'_>),
+) {
+    let below = bits - split_bits(rows.len(), how.leaf, bits).max(1);
+    let how = How { coder: how.coder.with(how.layout.digit(below..bits)), ..how };
+    let counts = &census::count(rows.records, &how.coder);
+    split(rows, how, &Split { counts, base, bits: below });
+}
+
+/// Sorts a bucket into bricks; one that is too large for the cache is split first.
+fn sort_bucket<R: Record>(
+    scratch: &mut Scratch<R>,
+    mut leaf: Leaf<'_, R>,
+    how: How,
+    found: &mut Bricks,
+) {
+    if leaf.rows.len() <= how.leaf.most || leaf.bits == 0 {
+        scratch.sort(leaf, how, found);
+        return;
+    }
+    let mut start = leaf.start;
+    again(&mut leaf.rows, how, (leaf.base, leaf.bits), |rows, how, split| {
+        let mut rest = split.partition(rows, how);
+        for (base, &count) in split.bases().zip(split.counts).filter(|&(_, &count)| count > 0) {
+            let rows = rest.split_off_front(count as usize);
+            sort_bucket(scratch, Leaf { rows, start, base, bits: split.bits }, how, found);
             start += count;
-            start - count..start
-        })
-        .collect();
-    if homes.len() > 1 {
-        partition(rows, &how.coder, &homes);
-    }
-    let mut rest = rows.reborrow();
-    for (bucket, home) in (0_u32..).zip(&homes) {
-        let mut inside = rest.split_off_front(home.len());
-        if inside.len() == 0 {
-            continue;
         }
-        let (base, bits) = (plan.base + (bucket << plan.bits), plan.bits);
-        if inside.len() <= how.leaf.most || bits == 0 {
-            buckets.push(Bucket { rows: home.end - home.start, base, bits });
-            continue;
-        }
-        let rest_bits = bits - split_bits(inside.len(), how.leaf, bits).max(1);
-        let how = How { coder: how.coder.with(how.layout.digit(rest_bits..bits)), ..how };
-        let counts = &census::count(inside.records, &how.coder);
-        split(&mut inside, how, Split { counts, base, bits: rest_bits }, buckets);
-    }
+    });
 }
 
 /// Sorts buckets into bricks, in parallel.
@@ -136,7 +178,7 @@ fn finish<R: Record>(mut rows: Rows<'_, R>, how: How, buckets: Vec<Bucket>) -> B
             scope.spawn(|_| {
                 let (mut scratch, mut bricks) = (Scratch::new(), Bricks::default());
                 while let Some((index, leaf)) = next(&leaves) {
-                    scratch.sort(leaf, how, &mut bricks);
+                    sort_bucket(&mut scratch, leaf, how, &mut bricks);
                     bricks = found.add(index, bricks);
                 }
             });
