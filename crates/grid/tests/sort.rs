@@ -53,9 +53,9 @@ fn check(records: &[Sphere], config: &GridConfig) {
     for (brick, color) in grid.bricks().iter().zip(grid.colors().unwrap()) {
         let run = brick.records.start as usize..brick.records.end as usize;
         let colors = &scene.attributes.colors.as_ref().unwrap()[run];
-        for channel in 0..4 {
+        for (channel, &mean) in color.iter().enumerate() {
             let sum: f64 = colors.iter().map(|color| f64::from(color[channel])).sum();
-            assert!((f64::from(color[channel]) - sum / colors.len() as f64).abs() <= 0.5);
+            assert!((f64::from(mean) - sum / colors.len() as f64).abs() <= 0.5);
         }
         if config.order == Order::Stable {
             let run = brick.records.start as usize..brick.records.end as usize;
