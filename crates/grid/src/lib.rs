@@ -44,6 +44,7 @@ use crate::{
     rows::Rows,
 };
 use puncta_core::{Brick, MAX_RECORDS, NO_RECORD, Record, Scene};
+use rayon::prelude::*;
 
 /// How to lay the grid.
 ///
@@ -137,7 +138,7 @@ impl Grid {
         match config.order {
             Order::Any => Self::sort_rows(Rows::new(records), config),
             Order::Stable => {
-                let mut ids: Vec<u32> = (0..NO_RECORD).take(records.len()).collect();
+                let mut ids = order(records.len());
                 Self::sort_rows(Rows::with_ids(records, &mut ids), config)
             }
         }
@@ -153,7 +154,8 @@ impl Grid {
     /// As [`Grid::sort`], and when the scene is not valid.
     pub fn sort_scene<R: Record>(scene: &mut Scene<R>, config: &GridConfig) -> Result<Self, Error> {
         scene.validate()?;
-        scene.keep_order();
+        let count = scene.records.len();
+        scene.attributes.ids.get_or_insert_with(|| order(count).into());
         Self::sort_rows(Rows::of_scene(scene), config)
     }
 
@@ -238,4 +240,10 @@ impl AsRef<[Brick]> for Grid {
     fn as_ref(&self) -> &[Brick] {
         &self.bricks
     }
+}
+
+/// The indices of records, which are not too many, in their order.
+fn order(records: usize) -> Vec<u32> {
+    let count = u32::try_from(records).unwrap_or(NO_RECORD);
+    (0..count).into_par_iter().collect()
 }
