@@ -187,7 +187,8 @@ impl View {
     {
         let finite = |(center, radius): &(DVec3, f64)| center.is_finite() && radius.is_finite();
         let balls = balls.into_iter().filter(finite);
-        let Some((start, _)) = balls.clone().next() else {
+        // A place among them that does not depend on their order.
+        let Some(start) = balls.clone().map(|(center, _)| center).reduce(DVec3::min) else {
             return self;
         };
         let placed = balls.map(|(center, radius)| (self.to_camera(center - start), radius));

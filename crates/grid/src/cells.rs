@@ -104,6 +104,16 @@ impl Cells {
         Self { bounds, ..self }
     }
 
+    /// All there is to know of the cells: dims, corner, scale and bounds.
+    pub(crate) fn parts(&self) -> ([u32; 3], Vec3, f32, Aabb) {
+        (self.dims, self.corner, self.scale, self.bounds)
+    }
+
+    /// The cells that have these parts.
+    pub(crate) fn from_parts(dims: [u32; 3], corner: Vec3, scale: f32, bounds: Aabb) -> Self {
+        Self { dims, bounds, corner, scale }
+    }
+
     /// The number of cells along each axis.
     #[must_use]
     pub const fn dims(&self) -> [u32; 3] {

@@ -15,6 +15,7 @@ use crate::{
 };
 use glam::Vec3;
 use puncta_core::{Aabb, Brick, Record};
+use std::ops::Range;
 use wide::f32x4;
 
 /// How many cells there may be for each row if they are counted.
@@ -212,15 +213,26 @@ fn measure<R: Record>(members: &[R], start: u32, sides: f32x4) -> Brick {
         }
         volume += f64::from(cubes.to_array()[3]);
     }
+    #[expect(clippy::cast_possible_truncation, reason = "there are no more than MAX_RECORDS")]
+    let end = start + members.len() as u32;
+    describe(start..end, [least, most], volume, sides)
+}
+
+/// The brick of records with these extremes and this sum of cubed radii.
+#[inline(always)]
+pub(crate) fn describe(
+    records: Range<u32>,
+    [least, most]: [f32x4; 2],
+    volume: f64,
+    sides: f32x4,
+) -> Brick {
     let [.., radius_max] = most.to_array();
     let corner = |lanes: f32x4| Vec3::from_slice(&lanes.to_array());
     let sides = sides.fast_max(most - least).fast_max(f32x4::splat(2.0 * radius_max));
     let cell = corner(sides).as_dvec3().element_product();
     let density = (4.0 / 3.0 * std::f64::consts::PI * volume / cell) as f32;
-    #[expect(clippy::cast_possible_truncation, reason = "there are no more than MAX_RECORDS")]
-    let end = start + members.len() as u32;
     Brick {
-        records: start..end,
+        records,
         bounds: Aabb { min: corner(least), max: corner(most) },
         radius_max,
         density: if density.is_finite() { density } else { 0.0 },

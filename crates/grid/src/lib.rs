@@ -22,6 +22,8 @@ brick its place; a second pass swaps records into their places. It owns no recor
 it needs 8 bytes for each cell while sorting and 44 bytes for each occupied brick afterwards.
 */
 
+#[cfg(all(target_endian = "little", any(unix, windows)))]
+mod bricks;
 mod cells;
 mod census;
 mod codes;
@@ -33,6 +35,11 @@ mod partition;
 mod rows;
 mod sort;
 
+#[cfg(all(target_endian = "little", any(unix, windows)))]
+pub use crate::bricks::{
+    BrickFile, ConvertConfig, ConvertError, Invalid, OpenError, Stage, Step, Summary, Verify,
+    convert, convert_watched,
+};
 pub use crate::{cells::Cells, error::Error, fit::Fit};
 
 use crate::{
