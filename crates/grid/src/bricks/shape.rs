@@ -7,7 +7,6 @@ a scene that has a place for some rows of each of them; buffers are blocks.
 
 use bytemuck::{cast_slice, cast_slice_mut};
 use puncta_core::{Column, Scalar, Scene, Sphere};
-use std::mem;
 
 /// Which columns there are besides records and ids.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -104,6 +103,6 @@ pub(crate) fn scatter(from: &[u8], to: &mut [u8], width: usize, places: &[u32]) 
     match width {
         1 => of::<1>(from, to, places),
         4 => of::<4>(from, to, places),
-        _ => of::<{ mem::size_of::<Sphere>() }>(from, to, places),
+        _ => of::<{ size_of::<Sphere>() }>(from, to, places),
     }
 }
