@@ -15,7 +15,7 @@ use options::Options;
 use progress::Bar;
 use puncta::{
     Source, Sphere,
-    grid::{ConvertConfig, Stage, Step, Summary, convert_watched},
+    grid::{ConvertConfig, Invalid, Stage, Step, Summary, convert_watched},
     io::{ReadOptions, synthetic::Generator},
 };
 use std::{
@@ -25,9 +25,7 @@ use std::{
     time::Instant,
 };
 
-static T0: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
 fn main() {
-    T0.get_or_init(Instant::now);
     if let Err(error) = run(&Options::parse()) {
         // Nobody may be listening any more.
         writeln!(std::io::stderr(), "error: {error:#}").ok();
@@ -46,9 +44,9 @@ fn run(options: &Options) -> Result<()> {
         if options.radius.is_some() {
             bail!("{}: a generator has its own radius: write it as r=0.01", options.input);
         }
-        write(options.input.parse::<Generator>()?, options)?
+        write(options.input.parse::<Generator>()?, options, Invalid::Refuse)?
     } else {
-        write(open(options)?, options)?
+        write(open(options)?, options, options.invalid())?
     };
     let seconds = start.elapsed().as_secs_f64();
     let Summary { records, skipped, bricks, bytes } = summary;
@@ -106,21 +104,16 @@ fn open(options: &Options) -> Result<impl Source<Record = Sphere, Error = puncta
 }
 
 /// Writes the records of a source, with a bar for each stage.
-fn write<S>(source: S, options: &Options) -> Result<Summary>
+fn write<S>(source: S, options: &Options, invalid: Invalid) -> Result<Summary>
 where
     S: Source<Record = Sphere>,
     S::Error: std::error::Error + Send + Sync + 'static,
 {
-    let config = ConvertConfig {
-        grid: options.grid(),
-        memory: options.memory,
-        invalid: options.invalid(),
-    };
+    let config = ConvertConfig { grid: options.grid(), memory: options.memory, invalid };
     let shown: Mutex<Option<(Stage, Bar)>> = Mutex::new(None);
     let watch = |step: Step| {
         let Ok(mut shown) = shown.lock() else { return };
         if shown.as_ref().is_none_or(|(stage, _)| *stage != step.stage) {
-            eprintln!("DBG {:?} {:?}", step.stage, T0.get_or_init(Instant::now).elapsed());
             if let Some((_, bar)) = shown.take() {
                 bar.finish();
             }

@@ -58,7 +58,10 @@ fn usual_up(up: DVec3, sight: Option<DVec3>) -> DVec3 {
 /// The box to look at: all records, unless strays make it many times as large as the rest.
 fn bounds(input: &Input) -> Bounds {
     let all = input.bounds;
-    let inner = input.scene.inner_bounds(STRAYS);
+    let inner = match &input.known {
+        Some(known) => known.inner,
+        None => input.scene.inner_bounds(STRAYS),
+    };
     let is_blown_up = all.extent().max_element() > STRAY_FACTOR * inner.extent().max_element();
     if is_blown_up && inner.extent().max_element() > 0.0 { inner } else { all }
 }

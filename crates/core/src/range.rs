@@ -64,7 +64,11 @@ impl RangeBins {
     #[inline]
     pub fn add(&mut self, value: f64) {
         if value.is_finite() && !self.bins.is_empty() {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "saturates"
+            )]
             let bin = ((value - self.low) * self.scale) as usize;
             self.bins[bin.min(BINS - 1)] += 1;
         }

@@ -54,7 +54,8 @@ pub(crate) fn places(records: usize) -> impl Iterator<Item = usize> {
 ///
 /// What is not finite is passed over. The box of no records is a point.
 pub(crate) fn inner_of(sample: &[Vec3]) -> Layout {
-    let sample: Vec<Vec3> = sample.iter().copied().filter(|position| position.is_finite()).collect();
+    let sample: Vec<Vec3> =
+        sample.iter().copied().filter(|position| position.is_finite()).collect();
     let mut values = vec![0.0; sample.len()];
     let mut layout =
         Layout { inner: Aabb { min: Vec3::ZERO, max: Vec3::ZERO }, overflow: [[false; 2]; 3] };

@@ -111,10 +111,9 @@ fn config() -> impl Strategy<Value = ConvertConfig> {
     ];
     let fit = prop_oneof![Just(Fit::Robust), Just(Fit::Whole)];
     let memory = prop_oneof![4 => 0_u64..20_000, 1 => Just(1 << 24)];
-    (resolution, fit, memory).prop_map(|(resolution, fit, memory)| ConvertConfig {
-        grid: GridConfig { resolution, fit },
-        memory,
-        invalid: Invalid::Refuse,
+    let invalid = prop_oneof![Just(Invalid::Refuse), Just(Invalid::Skip)];
+    (resolution, fit, memory, invalid).prop_map(|(resolution, fit, memory, invalid)| {
+        ConvertConfig { grid: GridConfig { resolution, fit }, memory, invalid }
     })
 }
 
@@ -183,6 +182,9 @@ proptest! {
             let ids: Vec<u32> = a.records.clone().map(|at| file.scene.id(at)).collect();
             prop_assert!(ids.is_sorted());
         }
+        if !scene.records.is_empty() {
+            prop_assert_eq!(file.bounds(), scene.bounds());
+        }
         let inner = scene.inner_bounds(0.001);
         prop_assert_eq!(file.inner_bounds(), inner);
         for axis in 0..3 {
@@ -226,10 +228,12 @@ enum Harm {
 
 fn harm() -> impl Strategy<Value = Harm> {
     // Half of the harm is done to the header and the tables, where it might be believed.
-    let at = || prop_oneof![Just(0_usize), Just(1)].prop_flat_map(|part| match part {
-        0 => 0_usize..260,
-        _ => 0_usize..100_000,
-    });
+    let at = || {
+        prop_oneof![Just(0_usize), Just(1)].prop_flat_map(|part| match part {
+            0 => 0_usize..260,
+            _ => 0_usize..100_000,
+        })
+    };
     prop_oneof![
         (at(), 0_u8..8).prop_map(|(at, bit)| Harm::Flip(at, 1 << bit)),
         (at(), any::<u8>()).prop_map(|(at, byte)| Harm::Byte(at, byte)),
@@ -267,10 +271,10 @@ fn mend(bytes: &mut [u8]) {
     if bytes.len() < 4096 {
         return;
     }
-    let (start, count) = (word(bytes, 176), word(bytes, 184));
+    let (start, count) = (word(bytes, 224), word(bytes, 232));
     if let Some(tables) = start.checked_add(count).and_then(|end| bytes.get(start..end)) {
         let sum = crc32fast::hash(tables);
-        bytes[192..196].copy_from_slice(&sum.to_le_bytes());
+        bytes[240..244].copy_from_slice(&sum.to_le_bytes());
     }
     let sum = crc32fast::hash(&bytes[..4092]);
     bytes[4092..4096].copy_from_slice(&sum.to_le_bytes());
@@ -353,8 +357,9 @@ fn files_of_other_kinds_are_told_apart() {
 fn records_that_no_grid_can_hold_are_refused_or_skipped() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.bricks");
-    let mut records: Vec<Sphere> =
-        (0..70_000_u32).map(|i| Sphere::new([(i % 211) as f32, (i % 13) as f32, 0.0], 1.0)).collect();
+    let mut records: Vec<Sphere> = (0..70_000_u32)
+        .map(|i| Sphere::new([(i % 211) as f32, (i % 13) as f32, 0.0], 1.0))
+        .collect();
     records[66_000].center[1] = f32::NAN;
     records[66_001].radius = -1.0;
     records[66_002].radius = f32::INFINITY;

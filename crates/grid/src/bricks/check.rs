@@ -6,7 +6,7 @@ use puncta_core::{Aabb, Brick};
 
 /// The grid of a file.
 pub(crate) fn grid(header: &Header, bricks: Vec<Brick>, codes: Vec<u32>) -> Result<Grid, Fault> {
-    check_inner(header)?;
+    check_places(header)?;
     if header.records == 0 {
         let layout = Layout::new([0; 3], 0);
         return Ok(Grid { cells: Cells::EMPTY, layout, bricks, codes });
@@ -71,9 +71,15 @@ fn cells(header: &Header) -> Result<Cells, Fault> {
     Ok(Cells::from_parts(dims, corner, scale, bounds))
 }
 
-fn check_inner(header: &Header) -> Result<(), Fault> {
+fn check_places(header: &Header) -> Result<(), Fault> {
     if !header.origin.is_finite() {
         return Err(fault(48, "the origin must be finite", header.origin));
+    }
+    for (byte, bounds) in [(128, header.inner), (176, header.outer)] {
+        if bounds.min.is_nan() || bounds.max.is_nan() {
+            let value = format!("{} to {}", bounds.min, bounds.max);
+            return Err(fault(byte, "the corners of a box must be numbers", value));
+        }
     }
     Ok(())
 }

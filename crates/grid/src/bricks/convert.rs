@@ -10,14 +10,19 @@ use super::{
     lattice::Lattice,
     parts::{Parts, Room},
     publish::Unborn,
-    shape,
+    shape::{self, Shape},
     spill::Spill,
     sums::{self, Sums},
-    survey::Survey,
+    survey::{Findings, Survey},
 };
-use crate::{GridConfig, leaf::Bricks};
+use crate::{
+    GridConfig,
+    leaf::{Bricks, How},
+};
+use glam::DVec3;
 use puncta_core::{Scene, Source, Sphere};
 use std::{
+    ops::Range,
     path::Path,
     sync::{
         Arc,
@@ -165,67 +170,115 @@ fn finish(
     let room = Room::new(config.memory, spill.shape.row_bytes());
     let lattice = Lattice::lay(&spill, config)?;
     let keys = Keys::new(lattice.how.layout, lattice.how.coder);
+
     let survey = Survey::new(&spill);
     let counted = counter(watch, Stage::Counting, total);
-    let look = |found: &mut Option<Survey>, block: &Scene, rows: std::ops::Range<u64>| {
+    let look = |found: &mut Option<Survey>, block: &Scene, rows: Range<u64>| {
         found.get_or_insert_with(|| survey.clone()).look(block, &rows);
         counted(rows.end - rows.start);
     };
     let (parts, surveys) = Parts::count(&spill, &keys, room, &look)?;
-    let survey = surveys.into_iter().flatten().fold(survey.clone(), Survey::join);
+    let findings = surveys.into_iter().flatten().fold(survey.clone(), Survey::join).finish();
 
-    let sections = sections(spill.rows, &spill.shape);
-    let end = sections.last().map_or(PAGE, Section::end);
-    file.file.set_len(end).map_err(Trouble::writing)?;
-    let columns = sections.iter().zip(spill.shape.widths());
-    let field = |(section, width): (&Section, usize)| Field {
-        file: Arc::clone(&file.file),
-        start: section.start,
-        width,
-    };
-    let fields: Vec<Field> = columns.map(field).collect();
+    let body = Body::new(&file, &spill)?;
     let distributed = counter(watch, Stage::Distributing, total);
-    distribute((&spill, &keys), &parts, &fields, room.step, &distributed)?;
-    let (shape, origin, records, skipped) = (spill.shape.clone(), spill.origin, spill.rows, spill.skipped);
-    // The disk needs no room for it any more.
+    distribute((&spill, &keys), &parts, &body.fields, room.step, &distributed)?;
+    let columns = Columns {
+        shape: spill.shape.clone(),
+        origin: spill.origin,
+        records: spill.rows,
+        skipped: spill.skipped,
+    };
+    // The disk has no need of it any more.
     drop(spill);
 
-    let mut arranger = Arranger::new(lattice.how);
-    let mut sums = vec![Sums::default(); fields.len()];
-    let most = parts.rows.iter().map(length).max().unwrap_or(0);
-    let mut block = shape.block(most);
-    for rows in &parts.rows {
-        read_rows(&fields, rows, &mut block)?;
-        arranger.arrange(&mut block, length(rows));
-        write_rows(&fields, rows, &block)?;
-        for ((sums, bytes), field) in sums.iter_mut().zip(shape::bytes(&block)).zip(&fields) {
-            sums.add(&bytes[..length(rows) * field.width]);
-        }
-        watch(Step { stage: Stage::Sorting, done: rows.end, total });
-    }
-    drop(block);
-    for (sums, section) in sums.iter_mut().zip(&sections) {
-        let padding = usize::try_from(section.padded - section.bytes).unwrap_or(0);
-        sums.add(&vec![0; padding]);
+    let sorted = |done| watch(Step { stage: Stage::Sorting, done, total });
+    let (bricks, sums) = body.sort(&parts, &columns.shape, lattice.how, &sorted)?;
+    watch(Step { stage: Stage::Finishing, done: 0, total });
+    let summary = write_tables(&file, &body, columns, (lattice, bricks, sums, findings))?;
+    file.publish().map_err(Trouble::writing)?;
+    Ok(summary)
+}
+
+/// What is known of the rows without looking at them.
+struct Columns {
+    shape: Shape,
+    origin: DVec3,
+    records: u64,
+    skipped: u64,
+}
+
+/// The columns in the file.
+struct Body {
+    sections: Vec<Section>,
+    fields: Vec<Field>,
+    /// Where the tables start.
+    end: u64,
+}
+
+impl Body {
+    /// Makes room for the rows of a spill.
+    fn new(file: &Unborn, spill: &Spill) -> Result<Self, Trouble> {
+        let sections = sections(spill.rows, &spill.shape);
+        let end = sections.last().map_or(PAGE, Section::end);
+        file.file.set_len(end).map_err(Trouble::writing)?;
+        let columns = sections.iter().zip(spill.shape.widths());
+        let field = |(section, width): (&Section, usize)| Field {
+            file: Arc::clone(&file.file),
+            start: section.start,
+            width,
+        };
+        Ok(Self { fields: columns.map(field).collect(), sections, end })
     }
 
-    watch(Step { stage: Stage::Finishing, done: 0, total });
-    let Bricks { bricks, codes } = arranger.finish();
-    let (inner, ranges) = survey.finish(origin);
-    let tables = Tables {
-        ranges,
-        names: shape.scalars.clone(),
-        bricks,
-        codes,
-        sums: sums.into_iter().map(Sums::finish).collect(),
-    };
+    /// Sorts part after part; returns the bricks and the sums of each section.
+    fn sort(
+        &self,
+        parts: &Parts,
+        shape: &Shape,
+        how: How,
+        done: &dyn Fn(u64),
+    ) -> Result<(Bricks, Vec<Vec<u32>>), Trouble> {
+        let mut arranger = Arranger::new(how);
+        let mut sums = vec![Sums::default(); self.fields.len()];
+        let mut block = shape.block(parts.rows.iter().map(length).max().unwrap_or(0));
+        for rows in &parts.rows {
+            read_rows(&self.fields, rows, &mut block)?;
+            arranger.arrange(&mut block, length(rows));
+            write_rows(&self.fields, rows, &block)?;
+            for ((sums, bytes), field) in
+                sums.iter_mut().zip(shape::bytes(&block)).zip(&self.fields)
+            {
+                sums.add(&bytes[..length(rows) * field.width]);
+            }
+            done(rows.end);
+        }
+        for (sums, section) in sums.iter_mut().zip(&self.sections) {
+            let padding = usize::try_from(section.padded - section.bytes).unwrap_or(0);
+            sums.add(&vec![0; padding]);
+        }
+        Ok((arranger.finish(), sums.into_iter().map(Sums::finish).collect()))
+    }
+}
+
+/// Writes the tables behind the columns, and the header that makes a brick file of it all.
+fn write_tables(
+    file: &Unborn,
+    body: &Body,
+    columns: Columns,
+    (lattice, bricks, sums, findings): (Lattice, Bricks, Vec<Vec<u32>>, Findings),
+) -> Result<Summary, Trouble> {
+    let Columns { shape, origin, records, skipped } = columns;
+    let Findings { inner, outer, ranges } = findings;
+    let (Bricks { bricks, codes }, names) = (bricks, shape.scalars);
+    let tables = Tables { ranges, names, bricks, codes, sums };
     let bytes = tables.encode();
     let (dims, corner, scale, bounds) = lattice.cells.parts();
     let header = Header {
-        file_bytes: end + bytes.len() as u64,
+        file_bytes: body.end + bytes.len() as u64,
         records,
         bricks: tables.bricks.len() as u64,
-        scalars: u32::try_from(shape.scalars.len()).unwrap_or(u32::MAX),
+        scalars: u32::try_from(tables.names.len()).unwrap_or(u32::MAX),
         colors: shape.colors,
         elements: shape.elements,
         origin,
@@ -235,13 +288,13 @@ fn finish(
         bounds,
         block_bits: lattice.how.layout.block_bits(),
         inner,
-        tables_start: end,
+        outer,
+        tables_start: body.end,
         tables_bytes: bytes.len() as u64,
         tables_sum: sums::sum(&bytes),
     };
-    write_at(&file.file, &bytes, end).map_err(Trouble::writing)?;
+    write_at(&file.file, &bytes, body.end).map_err(Trouble::writing)?;
     write_at(&file.file, &header.encode(), 0).map_err(Trouble::writing)?;
-    file.publish().map_err(Trouble::writing)?;
     Ok(Summary { records, skipped, bricks: header.bricks, bytes: header.file_bytes })
 }
 

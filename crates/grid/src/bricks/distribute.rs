@@ -65,6 +65,7 @@ pub(crate) fn distribute(
                 field.write(row, bytes).map_err(Trouble::writing)?;
             }
         }
+        spill.forget(&rows);
         done(count as u64);
         Ok(())
     };

@@ -68,9 +68,7 @@ impl Trouble {
                 ConvertError::Columns { index, found, before }
             }
             Self::Name { bytes } => ConvertError::Name { bytes },
-            Self::File { doing, source } => {
-                ConvertError::File { path: path.into(), doing, source }
-            }
+            Self::File { doing, source } => ConvertError::File { path: path.into(), doing, source },
         }
     }
 }

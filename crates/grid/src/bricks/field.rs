@@ -37,6 +37,20 @@ impl Field {
         write_at(&self.file, bytes, self.at(row))
     }
 
+    /// Lets go of the values of some rows, if the system can do that: the disk, or the memory that
+    /// waits to be written there, has room for others then.
+    #[cfg(target_os = "linux")]
+    pub(crate) fn forget(&self, rows: &Range<u64>) {
+        use rustix::fs::{FallocateFlags, fallocate};
+        let how = FallocateFlags::PUNCH_HOLE | FallocateFlags::KEEP_SIZE;
+        let bytes = (rows.end - rows.start) * self.width as u64;
+        // It is only a favor.
+        fallocate(&*self.file, how, self.at(rows.start), bytes).ok();
+    }
+
+    #[cfg(not(target_os = "linux"))]
+    pub(crate) fn forget(&self, _rows: &Range<u64>) {}
+
     /// Reads values from this row on.
     pub(crate) fn read(&self, row: u64, bytes: &mut [u8]) -> io::Result<()> {
         read_at(&self.file, bytes, self.at(row))
@@ -49,17 +63,25 @@ pub(crate) fn read_rows(
     rows: &Range<u64>,
     block: &mut Scene,
 ) -> Result<(), Trouble> {
+    read_columns(fields, rows, shape::bytes_mut(block))
+}
+
+/// Reads rows to the start of columns, with all threads.
+pub(crate) fn read_columns(
+    fields: &[Field],
+    rows: &Range<u64>,
+    columns: Vec<&mut [u8]>,
+) -> Result<(), Trouble> {
     let count = length(rows);
-    let columns = fields.iter().zip(shape::bytes_mut(block));
+    let columns = fields.iter().zip(columns);
     let pieces = columns.flat_map(|(field, bytes)| {
         let pieces = bytes[..count * field.width].chunks_mut(PIECE);
         let start = field.at(rows.start);
         pieces.enumerate().map(move |(i, piece)| (field, start + (i * PIECE) as u64, piece))
     });
     let pieces: Vec<_> = pieces.collect();
-    let read = pieces.into_par_iter().try_for_each(|(field, at, piece)| {
-        read_at(&field.file, piece, at)
-    });
+    let read =
+        pieces.into_par_iter().try_for_each(|(field, at, piece)| read_at(&field.file, piece, at));
     read.map_err(Trouble::reading)
 }
 
@@ -77,9 +99,8 @@ pub(crate) fn write_rows(
         pieces.enumerate().map(move |(i, piece)| (field, start + (i * PIECE) as u64, piece))
     });
     let pieces: Vec<_> = pieces.collect();
-    let written = pieces.into_par_iter().try_for_each(|(field, at, piece)| {
-        write_at(&field.file, piece, at)
-    });
+    let written =
+        pieces.into_par_iter().try_for_each(|(field, at, piece)| write_at(&field.file, piece, at));
     written.map_err(Trouble::writing)
 }
 

@@ -58,6 +58,7 @@ pub(crate) struct Header {
     pub(crate) bounds: Aabb,
     pub(crate) block_bits: u32,
     pub(crate) inner: Bounds,
+    pub(crate) outer: Bounds,
     pub(crate) tables_start: u64,
     pub(crate) tables_bytes: u64,
     pub(crate) tables_sum: u32,
@@ -120,8 +121,9 @@ impl Header {
         put(&mut all, [self.scale.to_le_bytes()]);
         put(&mut all, [self.bounds.min, self.bounds.max].floats());
         put(&mut all, [self.block_bits.to_le_bytes()]);
-        put(&mut all, self.inner.min.to_array().map(f64::to_le_bytes));
-        put(&mut all, self.inner.max.to_array().map(f64::to_le_bytes));
+        for corner in [self.inner.min, self.inner.max, self.outer.min, self.outer.max] {
+            put(&mut all, corner.to_array().map(f64::to_le_bytes));
+        }
         put(&mut all, [self.tables_start, self.tables_bytes].map(u64::to_le_bytes));
         put(&mut all, [self.tables_sum.to_le_bytes()]);
         let mut page = [0; PAGE as usize];
@@ -173,10 +175,8 @@ impl Header {
             scale: cursor.f32s::<1>()?[0],
             bounds: cursor.aabb()?,
             block_bits: cursor.u32()?,
-            inner: Bounds {
-                min: DVec3::from_array(cursor.f64s()?),
-                max: DVec3::from_array(cursor.f64s()?),
-            },
+            inner: cursor.bounds()?,
+            outer: cursor.bounds()?,
             tables_start: cursor.u64()?,
             tables_bytes: cursor.u64()?,
             tables_sum: cursor.u32()?,
@@ -198,7 +198,7 @@ impl Header {
         }
         if self.tables_start.checked_add(self.tables_bytes) != Some(length) {
             let what = format!("the tables at {} must reach to the end", self.tables_start);
-            return Err(fault(184, what, format!("{} bytes", self.tables_bytes)));
+            return Err(fault(232, what, format!("{} bytes", self.tables_bytes)));
         }
         if self.bricks > self.records || self.bricks > self.tables_bytes / BRICK_BYTES {
             let what = "there must be no more bricks than records and room in the tables";
@@ -245,7 +245,8 @@ impl Tables {
             let count = cursor.u32()?;
             let end = next.checked_add(count).filter(|&end| end > next);
             let end = end.filter(|&end| u64::from(end) <= header.records).ok_or_else(|| {
-                let what = format!("a brick must have 1 to {} records", header.records - u64::from(next));
+                let what =
+                    format!("a brick must have 1 to {} records", header.records - u64::from(next));
                 fault(byte, what, count)
             })?;
             let bounds = cursor.aabb()?;
@@ -266,7 +267,7 @@ impl Tables {
         let end = sections.last().map_or(PAGE, Section::end);
         if end != header.tables_start {
             let what = format!("the tables must start at {end}");
-            return Err(fault(176, what, header.tables_start));
+            return Err(fault(224, what, header.tables_start));
         }
         for section in sections {
             let sums = (0..section.sums()).map(|_| cursor.u32());
@@ -347,6 +348,11 @@ impl Cursor<'_> {
     fn aabb(&mut self) -> Result<Aabb, Fault> {
         let [min, max] = [self.f32s()?, self.f32s()?].map(Vec3::from_array);
         Ok(Aabb { min, max })
+    }
+
+    fn bounds(&mut self) -> Result<Bounds, Fault> {
+        let [min, max] = [self.f64s()?, self.f64s()?].map(DVec3::from_array);
+        Ok(Bounds { min, max })
     }
 
     fn name(&mut self) -> Result<String, Fault> {

@@ -53,6 +53,7 @@ pub struct BrickFile {
     /// The bricks.
     pub grid: Grid,
     inner: Bounds,
+    outer: Bounds,
     ranges: Vec<[f64; 2]>,
 }
 
@@ -87,16 +88,10 @@ impl BrickFile {
         head.starts_with(&MAGIC)
     }
 
-    /// The world box around all records, radii included: that of the bricks.
+    /// The world box around all records, radii included: [`Scene::bounds`], without looking at them.
     #[must_use]
-    pub fn bounds(&self) -> Bounds {
-        let mut all = Bounds::EMPTY;
-        for brick in self.grid.bricks() {
-            let Bounds { min, max } = brick.world_bounds(self.scene.origin);
-            all.add(min);
-            all.add(max);
-        }
-        all
+    pub const fn bounds(&self) -> Bounds {
+        self.outer
     }
 
     /// The world box around nearly all records: [`Scene::inner_bounds`] of the scene that was
@@ -165,7 +160,7 @@ fn open(path: &Path, verify: Verify) -> Result<BrickFile, Problem> {
     let found = sums::sum(&bytes);
     if found != header.tables_sum {
         let what = format!("the checksum of the tables must be {found:#010x}");
-        return Err(fault(192, what, format!("{:#010x}", header.tables_sum)).into());
+        return Err(fault(240, what, format!("{:#010x}", header.tables_sum)).into());
     }
     let mut tables = Tables::decode(&header, &bytes)?;
     drop(bytes);
@@ -182,7 +177,8 @@ fn open(path: &Path, verify: Verify) -> Result<BrickFile, Problem> {
     let map = Arc::new(map(&file)?);
     let mut scene = scene(&map, &sections, shape);
     scene.origin = header.origin;
-    Ok(BrickFile { scene, grid, inner: header.inner, ranges: tables.ranges })
+    let Header { inner, outer, .. } = header;
+    Ok(BrickFile { scene, grid, inner, outer, ranges: tables.ranges })
 }
 
 /// Maps a file to memory.
@@ -215,7 +211,8 @@ fn check_sums(file: &File, section: &Section, sums: &[u32]) -> Result<(), Proble
         if stored != found
             && let Ok(mut wrong) = wrong.lock()
         {
-            let sum = |sum: Option<u32>| sum.map_or("none".to_owned(), |sum| format!("{sum:#010x}"));
+            let sum =
+                |sum: Option<u32>| sum.map_or("none".to_owned(), |sum| format!("{sum:#010x}"));
             let last = section.start + bytes.end - 1;
             let what = format!("the checksum of the bytes up to {last} must be {}", sum(stored));
             let byte = section.start + bytes.start;
@@ -265,10 +262,7 @@ impl<T: bytemuck::Pod> AsRef<[T]> for Values<T> {
 }
 
 /// The values of a section.
-fn column<T: bytemuck::Pod + Send + Sync>(
-    map: &Arc<Mmap>,
-    section: Option<&Section>,
-) -> Column<T> {
+fn column<T: bytemuck::Pod + Send + Sync>(map: &Arc<Mmap>, section: Option<&Section>) -> Column<T> {
     let range = |section: &Section| {
         let start = usize::try_from(section.start).ok()?;
         Some(start..start.checked_add(usize::try_from(section.bytes).ok()?)?)

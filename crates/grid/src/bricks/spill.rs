@@ -9,7 +9,7 @@ out.
 use super::{
     convert::{ConvertConfig, Invalid, Stage, Step, Watch},
     error::{ConvertError, Trouble},
-    field::{Field, read_rows},
+    field::{Field, read_columns},
     publish::folder,
     shape::{self, Shape},
 };
@@ -27,6 +27,8 @@ pub(crate) struct Spill {
     pub(crate) shape: Shape,
     pub(crate) origin: DVec3,
     fields: Vec<Field>,
+    /// Whether ids are stored; else each is the index of its row.
+    has_ids: bool,
     pub(crate) rows: u64,
     pub(crate) skipped: u64,
     /// The box around all positions.
@@ -49,7 +51,8 @@ impl Spill {
             chunk.clear();
             let count = source.append(&mut chunk, CHUNK).map_err(ConvertError::Source)?;
             if spill.is_none() {
-                spill = Some(Self::start(&chunk, path).map_err(|trouble| trouble.at(path))?);
+                spill =
+                    Some(Self::start(&chunk, path, config).map_err(|trouble| trouble.at(path))?);
             }
             if let Some(spill) = &mut spill {
                 spill.take(&mut chunk, given, config).map_err(|trouble| trouble.at(path))?;
@@ -62,13 +65,15 @@ impl Spill {
         }
         match spill {
             Some(spill) => Ok(spill),
-            None => Self::start(&chunk, path).map_err(|trouble| trouble.at(path)),
+            None => Self::start(&chunk, path, config).map_err(|trouble| trouble.at(path)),
         }
     }
 
     /// A spill without rows, for chunks like this one.
-    fn start(chunk: &Scene, path: &Path) -> Result<Self, Trouble> {
+    fn start(chunk: &Scene, path: &Path, config: &ConvertConfig) -> Result<Self, Trouble> {
         let shape = Shape::of(chunk);
+        // Rows from which some are left out have ids that must be stored.
+        let has_ids = chunk.attributes.ids.is_some() || config.invalid == Invalid::Skip;
         let long = shape.scalars.iter().map(String::len).find(|&bytes| bytes > u16::MAX.into());
         if let Some(bytes) = long {
             return Err(Trouble::Name { bytes });
@@ -79,7 +84,11 @@ impl Spill {
         };
         Ok(Self {
             origin: chunk.origin,
-            fields: shape.widths().into_iter().map(file).collect::<Result<_, Trouble>>()?,
+            fields: stored(shape.widths(), has_ids)
+                .into_iter()
+                .map(file)
+                .collect::<Result<_, Trouble>>()?,
+            has_ids,
             rows: 0,
             skipped: 0,
             bounds: Aabb::EMPTY,
@@ -101,23 +110,23 @@ impl Spill {
             let (found, before) = (format!("{found:?}"), format!("{:?}", self.shape));
             return Err(Trouble::Columns { index, found, before });
         }
-        let records = usize::try_from(index).unwrap_or(usize::MAX).saturating_add(chunk.records.len());
+        let records =
+            usize::try_from(index).unwrap_or(usize::MAX).saturating_add(chunk.records.len());
         if records > MAX_RECORDS {
             return Err(Error::from(puncta_core::Error::TooManyRecords { records }).into());
         }
-        let ids = chunk.attributes.ids.is_none().then(|| {
-            (index..).take(chunk.records.len()).map(|id| u32::try_from(id).unwrap_or(u32::MAX))
-        });
-        if let Some(ids) = ids {
-            chunk.attributes.ids = Some(ids.collect());
+        if chunk.attributes.ids.is_some() {
             self.check(chunk, index, config)?;
-            self.write(chunk)?;
-            // The next chunk must be one that its source knows.
-            chunk.attributes.ids = None;
-            return Ok(());
+            return self.write(chunk);
         }
+        let ids = (index..).take(chunk.records.len());
+        let ids = ids.map(|id| u32::try_from(id).unwrap_or(u32::MAX));
+        chunk.attributes.ids = Some(ids.collect());
         self.check(chunk, index, config)?;
-        self.write(chunk)
+        self.write(chunk)?;
+        // The next chunk must be one that its source knows.
+        chunk.attributes.ids = None;
+        Ok(())
     }
 
     /// Leaves out records that no grid can hold, or refuses them; takes the box of the others.
@@ -157,7 +166,7 @@ impl Spill {
     }
 
     fn write(&mut self, chunk: &Scene) -> Result<(), Trouble> {
-        for (field, bytes) in self.fields.iter().zip(shape::bytes(chunk)) {
+        for (field, bytes) in self.fields.iter().zip(stored(shape::bytes(chunk), self.has_ids)) {
             field.write(self.rows, bytes).map_err(Trouble::writing)?;
         }
         for ([low, high], scalar) in self.ranges.iter_mut().zip(&chunk.attributes.scalars) {
@@ -179,8 +188,26 @@ impl Spill {
 
     /// Reads rows to the start of a block.
     pub(crate) fn read(&self, rows: &Range<u64>, block: &mut Scene) -> Result<(), Trouble> {
-        read_rows(&self.fields, rows, block)
+        read_columns(&self.fields, rows, stored(shape::bytes_mut(block), self.has_ids))?;
+        if let Some(ids) = block.attributes.ids.as_mut().filter(|_| !self.has_ids) {
+            let rows = rows.clone().map(|row| u32::try_from(row).unwrap_or(u32::MAX));
+            ids.to_mut().iter_mut().zip(rows).for_each(|(id, row)| *id = row);
+        }
+        Ok(())
     }
+
+    /// Lets go of rows that are not needed any more.
+    pub(crate) fn forget(&self, rows: &Range<u64>) {
+        self.fields.iter().for_each(|field| field.forget(rows));
+    }
+}
+
+/// The columns that are stored, of all: perhaps without ids, which come second.
+fn stored<T>(mut columns: Vec<T>, has_ids: bool) -> Vec<T> {
+    if !has_ids && columns.len() > 1 {
+        columns.remove(1);
+    }
+    columns
 }
 
 fn is_radius(radius: f32) -> bool {
