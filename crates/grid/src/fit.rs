@@ -80,6 +80,7 @@ fn place(i: usize, count: usize, records: usize) -> usize {
     let at = |i: usize| (i as u128 * records as u128 / count as u128) as usize;
     let (start, end) = (at(i), at(i + 1));
     // The multiplier is that of Knuth's multiplicative hashing.
+    #[expect(clippy::cast_possible_truncation, reason = "any bits will do")]
     let random = (i as u32).wrapping_mul(2_654_435_769) as usize;
     start + random % (end - start).max(1)
 }
@@ -87,12 +88,14 @@ fn place(i: usize, count: usize, records: usize) -> usize {
 /// From where to where the values go, strays left out.
 fn middle(values: &mut [f32]) -> [f32; 2] {
     let Some(last) = values.len().checked_sub(1) else { return [0.0; 2] };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is in range")]
     let tail = (values.len() as f64 * TAIL) as usize;
     let low = *values.select_nth_unstable_by(tail, f32::total_cmp).1;
     let least = values[..=tail].iter().copied().fold(low, f32::min);
     let high = *values.select_nth_unstable_by(last - tail, f32::total_cmp).1;
     let most = values[last - tail..].iter().copied().fold(high, f32::max);
     let margin = (f64::from(high) - f64::from(low)) * MARGIN;
+    #[expect(clippy::cast_possible_truncation, reason = "a margin may be rounded")]
     let clamp = |value: f32| {
         f64::from(value).clamp(f64::from(low) - margin, f64::from(high) + margin) as f32
     };

@@ -188,7 +188,9 @@ impl Scratch {
 
 /// Brings values into the order of the pairs, the lower halves of which tell where they are.
 fn permute<T: Copy>(pairs: &[u64], values: &mut [T], scratch: &mut Vec<T>) {
+    #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
+    let place = |pair: u64| pair as u32 as usize;
     scratch.clear();
-    scratch.extend(pairs.iter().map(|pair| values[(pair & u64::from(u32::MAX)) as usize]));
+    scratch.extend(pairs.iter().map(|&pair| values[place(pair)]));
     values.copy_from_slice(scratch);
 }

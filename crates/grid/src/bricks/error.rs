@@ -31,14 +31,14 @@ pub enum ConvertError<E> {
         bytes: usize,
     },
     /// A file could not be read or written.
-    #[error("{path}: {doing}: {source}", path = path.display())]
+    #[error("{path}: {doing}: {error}", path = path.display())]
     File {
         /// The file that was to be made.
         path: PathBuf,
         /// What was tried.
         doing: &'static str,
         /// What the system says.
-        source: io::Error,
+        error: io::Error,
     },
 }
 
@@ -48,16 +48,16 @@ pub(crate) enum Trouble {
     Grid(Error),
     Columns { index: u64, found: String, before: String },
     Name { bytes: usize },
-    File { doing: &'static str, source: io::Error },
+    File { doing: &'static str, error: io::Error },
 }
 
 impl Trouble {
-    pub(crate) fn reading(source: io::Error) -> Self {
-        Self::File { doing: "cannot read what was written there", source }
+    pub(crate) fn reading(error: io::Error) -> Self {
+        Self::File { doing: "cannot read what was written there", error }
     }
 
-    pub(crate) fn writing(source: io::Error) -> Self {
-        Self::File { doing: "cannot write", source }
+    pub(crate) fn writing(error: io::Error) -> Self {
+        Self::File { doing: "cannot write", error }
     }
 
     /// The error of a conversion to this file.
@@ -68,7 +68,7 @@ impl Trouble {
                 ConvertError::Columns { index, found, before }
             }
             Self::Name { bytes } => ConvertError::Name { bytes },
-            Self::File { doing, source } => ConvertError::File { path: path.into(), doing, source },
+            Self::File { doing, error } => ConvertError::File { path: path.into(), doing, error },
         }
     }
 }
@@ -84,12 +84,12 @@ impl From<Error> for Trouble {
 #[non_exhaustive]
 pub enum OpenError {
     /// The file cannot be read.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {error}", path = path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// What the system says.
-        source: io::Error,
+        error: io::Error,
     },
     /// The file is not what it should be: it is none of these files, or cut short, or altered.
     #[error("{path}: byte {byte}: {what}, not {value}", path = path.display())]

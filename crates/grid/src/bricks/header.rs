@@ -19,10 +19,13 @@ pub(crate) const MAGIC: [u8; 8] = *b"\x89BRICKS\n";
 const VERSION: u32 = 1;
 
 /// Sections start at multiples of this; the header is as long.
-pub(crate) const PAGE: u64 = 4096;
+pub(crate) const PAGE: u64 = PAGE_BYTES as u64;
+
+/// The same number.
+pub(crate) const PAGE_BYTES: usize = 4096;
 
 /// The bytes of the header.
-pub(crate) type HeaderBytes = [u8; PAGE as usize];
+pub(crate) type HeaderBytes = [u8; PAGE_BYTES];
 
 /// The bytes of a brick in the table and of its code.
 const BRICK_BYTES: u64 = 40;
@@ -126,7 +129,7 @@ impl Header {
         }
         put(&mut all, [self.tables_start, self.tables_bytes].map(u64::to_le_bytes));
         put(&mut all, [self.tables_sum.to_le_bytes()]);
-        let mut page = [0; PAGE as usize];
+        let mut page = [0; PAGE_BYTES];
         page[..all.len()].copy_from_slice(&all);
         let end = page.len() - 4;
         let sum = sums::sum(&page[..end]);

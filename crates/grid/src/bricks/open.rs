@@ -10,7 +10,9 @@ use super::{
     check,
     error::{OpenError, Trouble},
     field::{in_steps, read_at},
-    header::{Fault, Header, HeaderBytes, MAGIC, PAGE, Section, Tables, fault, sections},
+    header::{
+        Fault, Header, HeaderBytes, MAGIC, PAGE, PAGE_BYTES, Section, Tables, fault, sections,
+    },
     shape::Shape,
     sums::{self, RUN, Sums},
 };
@@ -75,7 +77,7 @@ impl BrickFile {
     pub fn open_with(path: impl AsRef<Path>, verify: Verify) -> Result<Self, OpenError> {
         let path = path.as_ref();
         open(path, verify).map_err(|problem| match problem {
-            Problem::Read(source) => OpenError::Read { path: path.to_owned(), source },
+            Problem::Read(error) => OpenError::Read { path: path.to_owned(), error },
             Problem::Invalid(Fault { byte, what, value }) => {
                 OpenError::Invalid { path: path.to_owned(), byte, what, value }
             }
@@ -147,7 +149,7 @@ fn open(path: &Path, verify: Verify) -> Result<BrickFile, Problem> {
         return Err(io::Error::other("this is not a regular file").into());
     }
     let length = metadata.len();
-    let mut page: HeaderBytes = [0; PAGE as usize];
+    let mut page: HeaderBytes = [0; PAGE_BYTES];
     let whole = usize::try_from(length.min(PAGE)).unwrap_or(0);
     read_at(&file, &mut page[..whole], 0)?;
     if length < PAGE && BrickFile::is_start(&page) {
@@ -223,8 +225,8 @@ fn check_sums(file: &File, section: &Section, sums: &[u32]) -> Result<(), Proble
         Ok(())
     };
     let read = in_steps((section.padded, step), || vec![0; 1 << 18], work);
-    if let Err(Trouble::File { source, .. }) = read {
-        return Err(source.into());
+    if let Err(Trouble::File { error, .. }) = read {
+        return Err(error.into());
     }
     match wrong.into_inner().ok().flatten() {
         Some(fault) => Err(fault.into()),

@@ -99,7 +99,8 @@ impl Parts {
 
     /// Joins runs that have few rows.
     fn join(runs: &[Run], bits: u32, most: u64) -> Self {
-        let (mut firsts, mut rows) = (vec![0], vec![0..0]);
+        let (mut firsts, mut rows) = (vec![0], Vec::with_capacity(1));
+        rows.push(0..0);
         for run in runs {
             let end = rows.last().map_or(0, |rows: &Range<u64>| rows.end);
             match rows.last_mut() {
@@ -123,7 +124,7 @@ impl Parts {
     /// The part of a key.
     #[inline]
     pub(crate) fn of(&self, key: u64) -> usize {
-        let head = (key >> self.shift) as usize;
+        let head = usize::try_from(key >> self.shift).unwrap_or(usize::MAX);
         let low = self.table[head] as usize;
         let high = self.table.get(head + 1).map_or(self.firsts.len() - 1, |&part| part as usize);
         if low == high {
@@ -163,8 +164,8 @@ fn cut<T: Default + Send>(
             let Some(run) = at.checked_sub(1).map(|at| &wide[at]) else { continue };
             let offset = key - run.first;
             if offset >> run.bits == 0 {
-                let digit = (offset >> below(run)) as usize;
-                counts[(at - 1 << bits) + digit].fetch_add(1, Ordering::Relaxed);
+                let digit = usize::try_from(offset >> below(run)).unwrap_or(usize::MAX);
+                counts[((at - 1) << bits) + digit].fetch_add(1, Ordering::Relaxed);
             }
         }
         Ok(())
