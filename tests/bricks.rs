@@ -118,7 +118,7 @@ fn a_killed_conversion_leaves_nothing_or_all() {
     let path: PathBuf = folder.path().join("a.bricks");
     let start = || {
         let mut command = tool("bricks");
-        command.args(["cube:n=300000", "--memory", "1MiB", "--out"]).arg(&path);
+        command.args(["cube:n=1000000", "--memory", "1MiB", "--out"]).arg(&path);
         command.stdout(Stdio::null()).spawn().unwrap()
     };
     let begun = Instant::now();
