@@ -69,6 +69,9 @@ fn bounds(input: &Input) -> Bounds {
 /// A view of all records in the box to look at.
 fn frame(view: View, input: &Input, bounds: &Bounds) -> View {
     let scene = &input.scene;
+    if let Some(grid) = input.known.as_ref().and_then(|known| known.grid.as_ref()) {
+        return view.framing_bricks(scene, grid.bricks(), bounds);
+    }
     let balls = (0..scene.records.len())
         .map(|index| (scene.position(index), f64::from(scene.records[index].radius)));
     let is_inside = |(center, _): &(DVec3, f64)| {

@@ -285,9 +285,8 @@ fn no_harm_goes_unnoticed() {
     let folder = tempfile::tempdir().unwrap();
     let (path, whole) = small(folder.path());
     let file = BrickFile::open(&path).unwrap();
-    let cases = std::env::var("BRICK_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(256);
     let harms = prop::collection::vec(harm(), 1..3);
-    let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(cases));
+    let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::default());
     let path = folder.path().join("harmed.bricks");
     let result = runner.run(&(harms, any::<bool>()), |(harms, is_mended)| {
         let mut bytes = whole.clone();
