@@ -1,4 +1,5 @@
-//! Sorts a particle or point file of any size into a brick file, which is drawn without being loaded.
+//! Sorts a particle or point file of any size into a brick file, which is drawn without being
+//! loaded.
 //!
 //! ```text
 //! cargo run --release --example bricks -- INPUT --out scene.bricks --memory 2GiB
@@ -15,7 +16,7 @@ use options::Options;
 use progress::Bar;
 use puncta::{
     Source, Sphere,
-    grid::{ConvertConfig, Invalid, Stage, Step, Summary, convert_watched},
+    grid::{ConvertConfig, ConvertStage, ConvertStep, ConvertSummary, Invalid, convert_watched},
     io::{ReadOptions, synthetic::Generator},
 };
 use std::{
@@ -49,7 +50,7 @@ fn run(options: &Options) -> Result<()> {
         write(open(options)?, options, options.invalid())?
     };
     let seconds = start.elapsed().as_secs_f64();
-    let Summary { records, skipped, bricks, bytes } = summary;
+    let ConvertSummary { records, skipped, bricks, bytes } = summary;
     let rate = bytes as f64 / 1e6 / seconds;
     let left_out = if skipped > 0 { format!(", {skipped} skipped") } else { String::new() };
     let out = options.out.display();
@@ -104,14 +105,14 @@ fn open(options: &Options) -> Result<impl Source<Record = Sphere, Error = puncta
 }
 
 /// Writes the records of a source, with a bar for each stage.
-fn write<S>(source: S, options: &Options, invalid: Invalid) -> Result<Summary>
+fn write<S>(source: S, options: &Options, invalid: Invalid) -> Result<ConvertSummary>
 where
     S: Source<Record = Sphere>,
     S::Error: std::error::Error + Send + Sync + 'static,
 {
     let config = ConvertConfig { grid: options.grid(), memory: options.memory, invalid };
-    let shown: Mutex<Option<(Stage, Bar)>> = Mutex::new(None);
-    let watch = |step: Step| {
+    let shown: Mutex<Option<(ConvertStage, Bar)>> = Mutex::new(None);
+    let watch = |step: ConvertStep| {
         let Ok(mut shown) = shown.lock() else { return };
         if shown.as_ref().is_none_or(|(stage, _)| *stage != step.stage) {
             if let Some((_, bar)) = shown.take() {
@@ -131,13 +132,13 @@ where
 }
 
 /// The bar of a stage.
-fn bar(step: Step) -> Bar {
+fn bar(step: ConvertStep) -> Bar {
     let counting = |what| Bar::counting(what, step.total.unwrap_or(0));
     match step.stage {
-        Stage::Reading => counting("reading"),
-        Stage::Counting => counting("counting"),
-        Stage::Distributing => counting("moving"),
-        Stage::Sorting => counting("sorting"),
-        Stage::Finishing => Bar::spinner("writing"),
+        ConvertStage::Reading => counting("reading"),
+        ConvertStage::Counting => counting("counting"),
+        ConvertStage::Distributing => counting("moving"),
+        ConvertStage::Sorting => counting("sorting"),
+        ConvertStage::Finishing => Bar::spinner("writing"),
     }
 }

@@ -7,7 +7,8 @@ use puncta::{
 };
 use std::{num::NonZero, path::PathBuf};
 
-/// Sorts a particle or point file of any size into a brick file, which is drawn without being loaded.
+/// Sorts a particle or point file of any size into a brick file, which is drawn without being
+/// loaded.
 #[derive(Debug, Parser)]
 #[command(name = "bricks", version)]
 pub(crate) struct Options {

@@ -37,8 +37,8 @@ mod sort;
 
 #[cfg(all(target_endian = "little", any(unix, windows)))]
 pub use crate::bricks::{
-    BrickFile, ConvertConfig, ConvertError, Invalid, OpenError, Stage, Step, Summary, Verify,
-    convert, convert_watched,
+    BrickFile, ConvertConfig, ConvertError, ConvertStage, ConvertStep, ConvertSummary, Invalid,
+    OpenError, Verify, convert, convert_watched,
 };
 pub use crate::{cells::Cells, error::Error, fit::Fit};
 

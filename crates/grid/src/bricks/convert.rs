@@ -63,7 +63,7 @@ pub enum Invalid {
 
 /// What a conversion does at the moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
+pub enum ConvertStage {
     /// Records are taken from the source.
     Reading,
     /// Records are counted.
@@ -78,9 +78,9 @@ pub enum Stage {
 
 /// How far a conversion is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Step {
+pub struct ConvertStep {
     /// What it does.
-    pub stage: Stage,
+    pub stage: ConvertStage,
     /// The number of records it has done that with.
     pub done: u64,
     /// How many there are, if that is known.
@@ -88,11 +88,11 @@ pub struct Step {
 }
 
 /// Called with each step, from any thread.
-pub(crate) type Watch<'a> = dyn Fn(Step) + Sync + 'a;
+pub(crate) type Watch<'a> = dyn Fn(ConvertStep) + Sync + 'a;
 
 /// What a brick file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Summary {
+pub struct ConvertSummary {
     /// The number of records.
     pub records: u64,
     /// How many records were left out.
@@ -121,7 +121,8 @@ pub struct Summary {
 /// use puncta_grid::{BrickFile, ConvertConfig, convert};
 ///
 /// let records: Vec<Sphere> =
-///     (0..9000_u16).map(|i| Sphere::new([f32::from(i % 97), f32::from(i % 89), 0.0], 0.5)).collect();
+///     (0..9000_u16).map(|i| Sphere::new([f32::from(i % 97), f32::from(i % 89), 0.0],
+///     0.5)).collect();
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("scene.bricks");
 /// let summary = convert(SliceSource::new(&records), &path, &ConvertConfig::default())?;
@@ -137,7 +138,7 @@ pub fn convert<S: Source<Record = Sphere>>(
     source: S,
     path: impl AsRef<Path>,
     config: &ConvertConfig,
-) -> Result<Summary, ConvertError<S::Error>> {
+) -> Result<ConvertSummary, ConvertError<S::Error>> {
     convert_watched(source, path, config, &|_| ())
 }
 
@@ -150,8 +151,8 @@ pub fn convert_watched<S: Source<Record = Sphere>>(
     source: S,
     path: impl AsRef<Path>,
     config: &ConvertConfig,
-    watch: &(dyn Fn(Step) + Sync),
-) -> Result<Summary, ConvertError<S::Error>> {
+    watch: &(dyn Fn(ConvertStep) + Sync),
+) -> Result<ConvertSummary, ConvertError<S::Error>> {
     let path = path.as_ref();
     // A place where no file can be is to be found out before anything is read.
     let file = Unborn::create(path).map_err(|error| Trouble::writing(error).at(path))?;
@@ -165,14 +166,14 @@ fn finish(
     file: Unborn,
     config: &ConvertConfig,
     watch: &Watch<'_>,
-) -> Result<Summary, Trouble> {
+) -> Result<ConvertSummary, Trouble> {
     let total = Some(spill.rows);
-    let room = Room::new(config.memory, spill.shape.row_bytes());
+    let room = Room::new(config.memory, spill.shape.row_bytes(), spill.rows);
     let lattice = Lattice::lay(&spill, config)?;
     let keys = Keys::new(lattice.how.layout, lattice.how.coder);
 
     let survey = Survey::new(&spill);
-    let counted = counter(watch, Stage::Counting, total);
+    let counted = counter(watch, ConvertStage::Counting, total);
     let look = |found: &mut Option<Survey>, block: &Scene, rows: Range<u64>| {
         found.get_or_insert_with(|| survey.clone()).look(block, &rows);
         counted(rows.end - rows.start);
@@ -181,7 +182,7 @@ fn finish(
     let findings = surveys.into_iter().flatten().fold(survey.clone(), Survey::join).finish();
 
     let body = Body::new(&file, &spill)?;
-    let distributed = counter(watch, Stage::Distributing, total);
+    let distributed = counter(watch, ConvertStage::Distributing, total);
     distribute((&spill, &keys), &parts, &body.fields, room.step, &distributed)?;
     let columns = Columns {
         shape: spill.shape.clone(),
@@ -192,9 +193,9 @@ fn finish(
     // The disk has no need of it any more.
     drop(spill);
 
-    let sorted = |done| watch(Step { stage: Stage::Sorting, done, total });
+    let sorted = |done| watch(ConvertStep { stage: ConvertStage::Sorting, done, total });
     let (bricks, sums) = body.sort(&parts, &columns.shape, lattice.how, &sorted)?;
-    watch(Step { stage: Stage::Finishing, done: 0, total });
+    watch(ConvertStep { stage: ConvertStage::Finishing, done: 0, total });
     let summary = write_tables(&file, &body, columns, (lattice, bricks, sums, findings))?;
     file.publish().map_err(Trouble::writing)?;
     Ok(summary)
@@ -267,7 +268,7 @@ fn write_tables(
     body: &Body,
     columns: Columns,
     (lattice, bricks, sums, findings): (Lattice, Bricks, Vec<Vec<u32>>, Findings),
-) -> Result<Summary, Trouble> {
+) -> Result<ConvertSummary, Trouble> {
     let Columns { shape, origin, records, skipped } = columns;
     let Findings { inner, outer, ranges } = findings;
     let (Bricks { bricks, codes }, names) = (bricks, shape.scalars);
@@ -295,18 +296,18 @@ fn write_tables(
     };
     write_at(&file.file, &bytes, body.end).map_err(Trouble::writing)?;
     write_at(&file.file, &header.encode(), 0).map_err(Trouble::writing)?;
-    Ok(Summary { records, skipped, bricks: header.bricks, bytes: header.file_bytes })
+    Ok(ConvertSummary { records, skipped, bricks: header.bricks, bytes: header.file_bytes })
 }
 
 /// Adds up what threads have done, and tells it.
 fn counter<'a>(
     watch: &'a Watch<'_>,
-    stage: Stage,
+    stage: ConvertStage,
     total: Option<u64>,
 ) -> impl Fn(u64) + Sync + use<'a> {
     let done = AtomicU64::new(0);
     move |more| {
         let done = done.fetch_add(more, Ordering::Relaxed) + more;
-        watch(Step { stage, done, total });
+        watch(ConvertStep { stage, done, total });
     }
 }

@@ -109,8 +109,8 @@ pub(crate) fn length(rows: &Range<u64>) -> usize {
     usize::try_from(rows.end - rows.start).unwrap_or(usize::MAX)
 }
 
-/// Does something with all rows, `step` of them at a time, with all threads: each has a state of its
-/// own, all of which are returned. The first error ends it.
+/// Does something with all rows, `step` of them at a time, with all threads: each has a state of
+/// its own, all of which are returned. The first error ends it.
 pub(crate) fn in_steps<T: Send>(
     (rows, step): (u64, usize),
     start: impl Fn() -> T + Sync,

@@ -99,7 +99,8 @@ impl Section {
     }
 }
 
-/// Where the columns of this many records lie. The numbers are far from the end of what `u64` holds.
+/// Where the columns of this many records lie. The numbers are far from the end of what `u64`
+/// holds.
 pub(crate) fn sections(records: u64, shape: &Shape) -> Vec<Section> {
     let mut start = PAGE;
     let section = |width| {

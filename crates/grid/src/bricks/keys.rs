@@ -2,8 +2,8 @@
 Keys: by which rows are sorted.
 
 A key is the code of a row's cell, and below it the row's id. So a cell that holds more rows than
-there is memory for is cut by ids, as the grid is cut by codes, and the order of all rows is given by
-their keys alone.
+there is memory for is cut by ids, as the grid is cut by codes, and the order of all rows is given
+by their keys alone.
 */
 
 use crate::{

@@ -40,10 +40,10 @@ pub enum Verify {
 /// # While it is open
 ///
 /// The file must not be changed. One that is replaced, as [`convert`](crate::convert) does, is not
-/// changed: the old one lives on, without a name, until it is closed. But if a program writes to it,
-/// what is drawn is of no use, and Rust's promise that shared values stay what they are is broken;
-/// if one cuts it short, then the system ends the process that looks at what is gone (`SIGBUS`). No
-/// program can prevent that, so keep brick files where others only read them.
+/// changed: the old one lives on, without a name, until it is closed. But if a program writes to
+/// it, what is drawn is of no use, and Rust's promise that shared values stay what they are is
+/// broken; if one cuts it short, then the system ends the process that looks at what is gone
+/// (`SIGBUS`). No program can prevent that, so keep brick files where others only read them.
 ///
 /// # Examples
 ///
@@ -90,7 +90,8 @@ impl BrickFile {
         head.starts_with(&MAGIC)
     }
 
-    /// The world box around all records, radii included: [`Scene::bounds`], without looking at them.
+    /// The world box around all records, radii included: [`Scene::bounds`], without looking at
+    /// them.
     #[must_use]
     pub const fn bounds(&self) -> Bounds {
         self.outer
@@ -157,7 +158,10 @@ fn open(path: &Path, verify: Verify) -> Result<BrickFile, Problem> {
     }
     let header = Header::decode(&page, length)?;
     // The header says what the length of the file says: that much is there.
-    let mut bytes = vec![0; usize::try_from(header.tables_bytes).map_err(io::Error::other)?];
+    let mut bytes = Vec::new();
+    let count = usize::try_from(header.tables_bytes).map_err(io::Error::other)?;
+    bytes.try_reserve_exact(count).map_err(io::Error::other)?;
+    bytes.resize(count, 0);
     read_at(&file, &mut bytes, header.tables_start)?;
     let found = sums::sum(&bytes);
     if found != header.tables_sum {

@@ -37,12 +37,12 @@ pub(crate) struct Room {
 }
 
 impl Room {
-    /// What to do with this many bytes for rows of this many.
-    pub(crate) fn new(memory: u64, row_bytes: usize) -> Self {
+    /// What to do with this many bytes for so many rows.
+    pub(crate) fn new(memory: u64, row_bytes: usize, rows: u64) -> Self {
         let (buffers, row) = (memory / 5 * 4, row_bytes as u64);
         let threads = rayon::current_num_threads() as u64;
         // Rows, grouped rows, keys and places.
-        let step = buffers / threads / (2 * row + 12);
+        let step = (buffers / threads / (2 * row + 12)).min(rows);
         let steps = STEP_ROWS;
         Self {
             // Rows, and what it takes to sort them if they are all in one brick.

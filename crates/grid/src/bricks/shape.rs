@@ -1,8 +1,8 @@
 /*!
 Which columns there are, and their values as bytes.
 
-Everywhere here columns come in the same order: records, ids, colors, elements, scalars. A *block* is
-a scene that has a place for some rows of each of them; buffers are blocks.
+Everywhere here columns come in the same order: records, ids, colors, elements, scalars. A *block*
+is a scene that has a place for some rows of each of them; buffers are blocks.
 */
 
 use bytemuck::{cast_slice, cast_slice_mut};

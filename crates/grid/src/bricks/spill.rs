@@ -7,7 +7,7 @@ out.
 */
 
 use super::{
-    convert::{ConvertConfig, Invalid, Stage, Step, Watch},
+    convert::{ConvertConfig, ConvertStage, ConvertStep, Invalid, Watch},
     error::{ConvertError, Trouble},
     field::{Field, read_columns},
     publish::folder,
@@ -54,11 +54,12 @@ impl Spill {
                 spill =
                     Some(Self::start(&chunk, path, config).map_err(|trouble| trouble.at(path))?);
             }
+            let taken = chunk.records.len() as u64;
             if let Some(spill) = &mut spill {
                 spill.take(&mut chunk, given, config).map_err(|trouble| trouble.at(path))?;
             }
-            given += count as u64;
-            watch(Step { stage: Stage::Reading, done: given, total });
+            given += taken;
+            watch(ConvertStep { stage: ConvertStage::Reading, done: given, total });
             if count < CHUNK {
                 break;
             }
