@@ -38,18 +38,14 @@ enum Harm {
     Word(usize, u32),
 }
 
-fn harm() -> impl Strategy<Value = Harm> {
-    // Half of the harm is done to the header and the tables, where it might be believed.
-    let at = || {
-        prop_oneof![Just(0_usize), Just(1)].prop_flat_map(|part| match part {
-            0 => 0_usize..260,
-            _ => 0_usize..100_000,
-        })
-    };
+/// Harm to a file of this length.
+fn harm(length: usize) -> impl Strategy<Value = Harm> {
+    // Most harm is done to the header and the tables, where it might be believed.
+    let at = move || prop_oneof![0_usize..260, length - 1500..length, 0..length];
     prop_oneof![
         (at(), 0_u8..8).prop_map(|(at, bit)| Harm::Flip(at, 1 << bit)),
         (at(), any::<u8>()).prop_map(|(at, byte)| Harm::Byte(at, byte)),
-        (0_usize..100_000).prop_map(Harm::Truncate),
+        (0..length).prop_map(Harm::Truncate),
         prop::collection::vec(any::<u8>(), 1..5000).prop_map(Harm::Extend),
         (at(), at()).prop_map(|(a, b)| Harm::Swap(a, b)),
         (at(), prop_oneof![Just(u32::MAX), Just(0), Just(1 << 31), any::<u32>()])
@@ -97,7 +93,7 @@ fn no_harm_goes_unnoticed() {
     let folder = tempfile::tempdir().unwrap();
     let (path, whole) = small(folder.path());
     let file = BrickFile::open(&path).unwrap();
-    let harms = prop::collection::vec(harm(), 1..3);
+    let harms = prop::collection::vec(harm(whole.len()), 1..3);
     let mut runner = TestRunner::new(ProptestConfig::default());
     let path = folder.path().join("harmed.bricks");
     let result = runner.run(&(harms, any::<bool>()), |(harms, is_mended)| {
@@ -169,4 +165,41 @@ fn files_of_other_kinds_are_told_apart() {
     }
     assert!(matches!(BrickFile::open(folder.path()), Err(OpenError::Read { .. })));
     assert!(matches!(BrickFile::open(folder.path().join("none")), Err(OpenError::Read { .. })));
+}
+
+#[test]
+fn tables_that_are_no_grid_are_refused_even_if_their_sums_are_right() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, whole) = small(folder.path());
+    let bricks = BrickFile::open(&path).unwrap().grid.bricks().len();
+    let word = |at: usize| u64::from_le_bytes(whole[at..at + 8].try_into().unwrap()) as usize;
+    // Behind the ranges of five columns and the names of two.
+    let table = word(224) + 5 * 16 + (2 + "speed".len()) + (2 + "\u{3c1} of it".len());
+    let codes = table + 36 * bricks;
+    for (at, bytes, named) in [
+        (table, 0_u32.to_le_bytes(), "a brick must have 1 to 900 records, not 0"),
+        (table, 901_u32.to_le_bytes(), "a brick must have 1 to 900 records, not 901"),
+        (table, 1_u32.to_le_bytes(), "the bricks must have 900 records"),
+        (table + 4, 1e9_f32.to_le_bytes(), "the box of brick 0 must lie in its cell"),
+        (table + 4, f32::NAN.to_le_bytes(), "the box of brick 0 must lie in its cell"),
+        (table + 28, f32::NAN.to_le_bytes(), "the largest radius of brick 0"),
+        (table + 32, (-1_f32).to_le_bytes(), "the density of brick 0"),
+        (codes + 4, 0_u32.to_le_bytes(), "the code of brick 1 must be above"),
+        (codes + 4, u32::MAX.to_le_bytes(), "the code of brick 1 must be that of a cell"),
+        (72, u32::MAX.to_le_bytes(), "the numbers of cells along the axes"),
+        (84, f32::INFINITY.to_le_bytes(), "the corner of the cells"),
+        (96, 0_f32.to_le_bytes(), "the scale of the cells"),
+        (124, 77_u32.to_le_bytes(), "bits of a code can tell the block, not 77"),
+        (40, 3_u32.to_le_bytes(), "small.bricks: byte "),
+        (40, u32::MAX.to_le_bytes(), "there must be room for the scalars' names"),
+        (32, u32::MAX.to_le_bytes(), "no more bricks than records"),
+        (24, 5000_u32.to_le_bytes(), "the bricks must have 5000 records, not 900"),
+    ] {
+        let mut harmed = whole.clone();
+        harmed[at..at + 4].copy_from_slice(&bytes);
+        mend(&mut harmed);
+        fs::write(&path, &harmed).unwrap();
+        let error = BrickFile::open_with(&path, Verify::Tables).unwrap_err().to_string();
+        assert!(error.contains(named), "{error}, but not {named}");
+    }
 }
