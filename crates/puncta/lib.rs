@@ -11,6 +11,8 @@ pub use puncta_core::{
     Scene, Source, Sphere, Stage, Step, View, Visible,
 };
 pub use puncta_cpu::{Background, ColorMap, Coloring, CpuRenderer, Shading, shade};
+#[cfg(all(target_endian = "little", any(unix, windows)))]
+pub use puncta_grid::{BrickFile, ConvertConfig, convert};
 pub use puncta_grid::{Cells, Error as GridError, Fit, Grid, GridConfig, Order, Resolution};
 pub use puncta_io::{Format, Loaded, ReadOptions};
 pub use puncta_occlusion::{Depth, FrustumCull};

@@ -17,9 +17,9 @@ pub(crate) enum Contender {
     Puncta,
     /// The sort of the thesis: one thread, two passes, straight into cells; then the statistics
     Thesis,
-    /// rayon's par_sort_unstable_by_key by cell, without statistics
+    /// The parallel sort of rayon, by cell, without statistics
     Rayon,
-    /// rdst by cell, without statistics
+    /// The radix sort rdst, by cell, without statistics
     Rdst,
 }
 
@@ -150,7 +150,14 @@ impl Keyed {
         let place: [u32; 3] = std::array::from_fn(|axis| {
             let corner = f32::from_bits(CELLS[axis].load(Relaxed));
             let last = CELLS[4 + axis].load(Relaxed) - 1;
-            (((self.0.center[axis] - corner) * scale) as u32).min(last)
+            let cell = (self.0.center[axis] - corner) * scale;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "it saturates"
+            )]
+            let cell = cell as u32;
+            cell.min(last)
         });
         let dims = [CELLS[4].load(Relaxed), CELLS[5].load(Relaxed)];
         (place[2] * dims[1] + place[1]) * dims[0] + place[0]

@@ -103,7 +103,9 @@ fn main() -> Result<()> {
 fn count(text: &str) -> Result<usize, String> {
     let number: f64 = text.parse().map_err(|error| format!("{error}"))?;
     let is_count = (1.0..=4e9).contains(&number) && number.fract() == 0.0;
-    is_count.then_some(number as usize).ok_or_else(|| "must be a whole number up to 4e9".into())
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked")]
+    let count = number as usize;
+    is_count.then_some(count).ok_or_else(|| "must be a whole number up to 4e9".into())
 }
 
 /// The records to sort.

@@ -7,10 +7,11 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use puncta::{
-    Bounds, Format, Loaded, ReadOptions, Scene, Source, Sphere,
+    Bounds, Format, Grid, Loaded, ReadOptions, Scene, Source, Sphere,
+    grid::{BrickFile, Verify},
     io::{Scalars, elements, synthetic::Generator},
 };
-use std::{path::Path, sync::Arc};
+use std::{collections::HashMap, fs::File, io::Read, path::Path, sync::Arc};
 
 /// What is drawn without an input: laser ablation, 1.5 million atoms.
 const BUILT_IN: &str = "ablation:n=1500000";
@@ -31,6 +32,21 @@ pub(crate) struct Input {
     pub(crate) scalar: Option<String>,
     /// How to look at the built-in scene.
     pub(crate) outlook: Option<Outlook>,
+    /// What a brick file knows besides.
+    pub(crate) known: Option<Known>,
+}
+
+/// What is known of a scene without looking at its records.
+#[derive(Debug)]
+pub(crate) struct Known {
+    /// Until it is taken.
+    pub(crate) grid: Option<Grid>,
+    /// The box around nearly all records.
+    pub(crate) inner: Bounds,
+    /// The ranges of x, y and z.
+    pub(crate) axes: [[f64; 2]; 3],
+    /// The ranges of scalars.
+    pub(crate) scalars: HashMap<String, [f64; 2]>,
 }
 
 /// A view and colors that suit a scene.
@@ -59,6 +75,8 @@ pub(crate) fn read(options: &Options) -> Result<Input> {
     };
     if Generator::is_spec(name) && !Path::new(name).exists() {
         generate(name, options)
+    } else if is_brick_file(name) {
+        open_bricks(name, options)
     } else {
         read_file(name, options)
     }
@@ -100,6 +118,7 @@ fn generate(spec: &str, options: &Options) -> Result<Input> {
         up,
         scalar,
         outlook: None,
+        known: None,
     })
 }
 
@@ -117,6 +136,48 @@ fn set_radii(scene: &mut Scene<Sphere>, options: &Options) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Whether a file says that it is a brick file, by its content or else by its name.
+fn is_brick_file(name: &str) -> bool {
+    let mut head = [0; 8];
+    let read = File::open(name).and_then(|mut file| file.read_exact(&mut head));
+    match read {
+        Ok(()) => BrickFile::is_start(&head),
+        Err(_) => Path::new(name).extension().is_some_and(|extension| extension == "bricks"),
+    }
+}
+
+/// Opens a brick file: its records are not loaded.
+fn open_bricks(name: &str, options: &Options) -> Result<Input> {
+    if options.frame > 0 {
+        bail!("{name}: there is no frame {}: a brick file has 1, counted from 0", options.frame);
+    }
+    if options.radius.is_some() || options.radius_scale != 1.0 {
+        bail!("{name}: the radii of a brick file cannot be changed: choose them when it is made");
+    }
+    let verify = if options.verify { Verify::Whole } else { Verify::Tables };
+    let spinner = Bar::spinner("opening");
+    let file = BrickFile::open_with(name, verify)?;
+    spinner.finish();
+    let scalars = file.scene.attributes.scalars.iter();
+    let range = |name: &String| Some((name.clone(), file.scalar_range(name)?));
+    let scalars = scalars.filter_map(|scalar| range(&scalar.name)).collect();
+    let (bounds, inner) = (file.bounds(), file.inner_bounds());
+    let axes = [0, 1, 2].map(|axis| file.axis_range(axis));
+    let BrickFile { scene, grid, .. } = file;
+    Ok(Input {
+        name: name.to_owned(),
+        format: "bricks".to_owned(),
+        skipped: 0,
+        notices: vec![],
+        up: DVec3::Y,
+        scalar: None,
+        outlook: None,
+        known: Some(Known { grid: Some(grid), inner, axes, scalars }),
+        bounds,
+        scene,
+    })
 }
 
 fn read_file(name: &str, options: &Options) -> Result<Input> {
@@ -161,6 +222,7 @@ fn read_file(name: &str, options: &Options) -> Result<Input> {
         up: if format == Format::Las { DVec3::Z } else { DVec3::Y },
         scalar: None,
         outlook: None,
+        known: None,
         bounds: scene.bounds(),
         scene,
     })

@@ -42,7 +42,7 @@ fn run(options: &Options) -> Result<()> {
     }
     let view = statistics.time("view", || view::choose(options, &input))?;
     let look = output::Look::new(options, &input, &view)?;
-    let grid = statistics.time("sort", || sort(options, &mut input.scene))?;
+    let grid = statistics.time("sort", || sort(options, &mut input))?;
     let picture = draw(&input.scene, &grid, &view, "frame", &mut statistics)?;
     statistics.describe(&input, &grid, &view, &picture);
     output::write_numbers(options, &input.scene, &picture)?;
@@ -54,11 +54,17 @@ fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-fn sort(options: &Options, scene: &mut Scene<Sphere>) -> Result<Grid> {
+/// Sorts the records into bricks, unless they are sorted and no other grid is asked for.
+fn sort(options: &Options, input: &mut input::Input) -> Result<Grid> {
+    let known = input.known.as_mut().and_then(|known| known.grid.take());
+    if let (Some(grid), None) = (known, options.grid) {
+        return Ok(grid);
+    }
     let spinner = progress::Bar::spinner("sorting");
     let resolution =
         options.grid.map_or_else(Resolution::default, |cells| Resolution::LongestSide(cells.get()));
-    let grid = Grid::sort_scene(scene, &GridConfig { resolution, ..GridConfig::default() })?;
+    let grid =
+        Grid::sort_scene(&mut input.scene, &GridConfig { resolution, ..GridConfig::default() })?;
     spinner.finish();
     Ok(grid)
 }

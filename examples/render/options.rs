@@ -9,8 +9,8 @@ use std::{num::NonZero, path::PathBuf};
 #[derive(Debug, Parser)]
 #[command(name = "render", version, after_help = after_help())]
 pub(crate) struct Options {
-    /// A file (XYZ, extended XYZ, LAMMPS dump, PDB, MMPLD, PLY, LAS, LAZ, legacy VTK; gzip is fine)
-    /// or a generator such as cube:n=10000000,r=0.01,seed=7; a built-in scene by default
+    /// A file (XYZ, extended XYZ, LAMMPS dump, PDB, MMPLD, PLY, LAS, LAZ, legacy VTK; gzip is fine),
+    /// a brick file, or a generator such as cube:n=10000000,r=0.01,seed=7; a built-in scene by default
     pub(crate) input: Option<String>,
 
     /// Columns and rows of the picture
@@ -85,7 +85,12 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(crate) strict: bool,
 
-    /// Grid cells along the longest side; by default some 512 records share a cell
+    /// Check every byte of a brick file, and not only its tables
+    #[arg(long)]
+    pub(crate) verify: bool,
+
+    /// Grid cells along the longest side; by default those of a brick file, else some 512
+    /// records share a cell
     #[arg(long, value_name = "N")]
     pub(crate) grid: Option<NonZero<u32>>,
 

@@ -8,6 +8,7 @@ use crate::{
     statistics::Statistics,
 };
 use anyhow::{Context, Result};
+use glam::DVec3;
 use puncta::{
     ColorMap, Coloring, Grid, Image, Picture, Scene, Shading, Sphere, View,
     cpu::draw_legend,
@@ -102,9 +103,15 @@ pub(crate) fn place(options: &Options) -> String {
 fn coloring<'a>(options: &'a Options, input: &'a Input, map: &'a ColorMap) -> Coloring<'a> {
     let attributes = &input.scene.attributes;
     let range = options.range.or(input.outlook.map(|outlook| outlook.range));
-    let scalar = |name| Coloring::Scalar { name, map, range };
-    let up = options.up.unwrap_or(input.up);
-    let height = Coloring::Height { axis: up.normalize_or(input.up), map, range: options.range };
+    let known = input.known.as_ref();
+    let scalar = |name: &'a str| {
+        let range = range.or(known.and_then(|known| known.scalars.get(name).copied()));
+        Coloring::Scalar { name, map, range }
+    };
+    let axis = options.up.unwrap_or(input.up).normalize_or(input.up);
+    let along = DVec3::AXES.iter().position(|&x_y_or_z| x_y_or_z == axis);
+    let along = known.zip(along).map(|(known, along)| known.axes[along]);
+    let height = Coloring::Height { axis, map, range: options.range.or(along) };
     let has_elements =
         attributes.elements.as_ref().is_some_and(|elements| elements.iter().any(|&e| e != 0));
     match &options.color_by {

@@ -58,7 +58,10 @@ fn usual_up(up: DVec3, sight: Option<DVec3>) -> DVec3 {
 /// The box to look at: all records, unless strays make it many times as large as the rest.
 fn bounds(input: &Input) -> Bounds {
     let all = input.bounds;
-    let inner = input.scene.inner_bounds(STRAYS);
+    let inner = match &input.known {
+        Some(known) => known.inner,
+        None => input.scene.inner_bounds(STRAYS),
+    };
     let is_blown_up = all.extent().max_element() > STRAY_FACTOR * inner.extent().max_element();
     if is_blown_up && inner.extent().max_element() > 0.0 { inner } else { all }
 }
@@ -66,6 +69,9 @@ fn bounds(input: &Input) -> Bounds {
 /// A view of all records in the box to look at.
 fn frame(view: View, input: &Input, bounds: &Bounds) -> View {
     let scene = &input.scene;
+    if let Some(grid) = input.known.as_ref().and_then(|known| known.grid.as_ref()) {
+        return view.framing_bricks(scene, grid.bricks(), bounds);
+    }
     let balls = (0..scene.records.len())
         .map(|index| (scene.position(index), f64::from(scene.records[index].radius)));
     let is_inside = |(center, _): &(DVec3, f64)| {

@@ -39,6 +39,18 @@ impl Bounds {
         self.max = self.max.max(point);
     }
 
+    /// Whether `point` lies in the box, its faces included.
+    #[must_use]
+    pub fn contains(&self, point: DVec3) -> bool {
+        self.min.cmple(point).all() && point.cmple(self.max).all()
+    }
+
+    /// Whether the boxes have a point in common.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
     /// The eight corners.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {

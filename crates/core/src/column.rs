@@ -119,6 +119,15 @@ impl<T: Clone> Column<T> {
         }
     }
 
+    /// Drops all values. The room that an owned column has stays for others; a shared one is let go
+    /// of.
+    pub fn clear(&mut self) {
+        match &mut self.0 {
+            Storage::Owned(values) => values.clear(),
+            Storage::Shared(_) => *self = Self::new(),
+        }
+    }
+
     /// The values. Those of a shared column are copied.
     #[must_use]
     pub fn into_vec(self) -> Vec<T> {

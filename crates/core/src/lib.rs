@@ -53,7 +53,7 @@ pub use crate::{
     image::Image,
     picture::{NO_RECORD, Picture},
     pipeline::{Batch, Frame, Pipeline, Progress, Progressive, Renderer, Stage, Step},
-    range::inner_range,
+    range::{RangeBins, inner_range},
     record::{Record, Sphere},
     scene::{Attributes, MAX_RECORDS, Scalar, Scene},
     source::{SliceSource, Source},

@@ -52,6 +52,13 @@ pub struct Scalar {
     pub values: Column<f32>,
 }
 
+/// No records around the origin.
+impl<R: Record> Default for Scene<R> {
+    fn default() -> Self {
+        Self::new(Vec::new())
+    }
+}
+
 impl<R: Record> Scene<R> {
     /// A scene around the origin, without attributes.
     #[must_use]
@@ -142,6 +149,32 @@ impl<R: Record> Scene<R> {
     pub fn keep_order(&mut self) {
         let records = self.records.len();
         self.attributes.ids.get_or_insert_with(|| (0..NO_RECORD).take(records).collect());
+    }
+
+    /// Drops all records and their values. The origin, the columns, and the room they have stay: so a
+    /// [`Source`](crate::Source) gives one chunk after the other in the memory of one.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use puncta_core::{Scene, SliceSource, Source, Sphere};
+    ///
+    /// let records: Vec<Sphere> = (0..10_u8).map(|i| Sphere::new([i.into(); 3], 1.0)).collect();
+    /// let (mut source, mut chunk, mut sum) = (SliceSource::new(&records), Scene::default(), 0.0);
+    /// while source.append(&mut chunk, 4)? > 0 {
+    ///     sum += chunk.records.iter().map(|sphere| sphere.center[0]).sum::<f32>();
+    ///     chunk.clear();
+    /// }
+    /// assert_eq!(sum, 45.0);
+    /// # Ok::<(), std::convert::Infallible>(())
+    /// ```
+    pub fn clear(&mut self) {
+        self.records.clear();
+        let Attributes { ids, colors, elements, scalars } = &mut self.attributes;
+        ids.iter_mut().for_each(Column::clear);
+        colors.iter_mut().for_each(Column::clear);
+        elements.iter_mut().for_each(Column::clear);
+        scalars.iter_mut().for_each(|scalar| scalar.values.clear());
     }
 
     /// Swaps two records and their attributes. Columns that are shared are copied first.

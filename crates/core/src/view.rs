@@ -17,7 +17,9 @@ in camera coordinates, where `s` is `2 tan(fov_y / 2) / height` or, for an ortho
 height of the picture in world units divided by the number of rows.
 */
 
-use crate::{Bounds, Error, frame::Frame};
+mod framing;
+
+use crate::Error;
 use glam::{DQuat, DVec2, DVec3};
 
 /// The largest number of rows or columns of a picture.
@@ -25,9 +27,6 @@ pub const MAX_SIDE: u32 = 16_384;
 
 /// The share of the distance to the target at which the near plane lies by default.
 const NEAR_SHARE: f64 = 1e-9;
-
-/// The share of the picture that a fitted scene fills.
-const FIT_SHARE: f64 = 0.95;
 
 /// How rays spread.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -164,64 +163,6 @@ impl View {
         Ok(Self { near, ..self })
     }
 
-    /// The same direction from a place where the whole box is seen; nothing changes if it is empty.
-    ///
-    /// An orthographic view gets a new height; the near plane is set as in [`View::look_at`].
-    #[must_use]
-    pub fn fitted(self, bounds: &Bounds) -> Self {
-        if bounds.is_empty() {
-            return self;
-        }
-        self.framing(bounds.corners().into_iter().map(|corner| (corner, 0.0)))
-    }
-
-    /// As [`View::fitted`], for balls in world coordinates. Those that are not finite do not count.
-    ///
-    /// The balls touch a margin of the picture at two opposite sides, and lie in the middle of the
-    /// other two, or nearly so.
-    #[must_use]
-    pub fn framing<I>(self, balls: I) -> Self
-    where
-        I: IntoIterator<Item = (DVec3, f64)>,
-        I::IntoIter: Clone,
-    {
-        let finite = |(center, radius): &(DVec3, f64)| center.is_finite() && radius.is_finite();
-        let balls = balls.into_iter().filter(finite);
-        let Some((start, _)) = balls.clone().next() else {
-            return self;
-        };
-        let placed = balls.map(|(center, radius)| (self.to_camera(center - start), radius));
-        let aspect = f64::from(self.width) / f64::from(self.height);
-        let slopes = match self.projection {
-            Projection::Perspective { fov_y } => {
-                (fov_y * 0.5).tan() * FIT_SHARE * DVec2::new(aspect, 1.0)
-            }
-            Projection::Orthographic { .. } => DVec2::ZERO,
-        };
-        let frame = Frame::around(placed.clone(), slopes);
-        let mut view = self.clone();
-        let (middle, distance) = match view.projection {
-            Projection::Perspective { .. } => {
-                let back = frame.apex();
-                (frame.centered(placed, back), frame.depth() - back)
-            }
-            Projection::Orthographic { .. } => {
-                let height = frame.sides().y.max(frame.sides().x / aspect) / FIT_SHARE;
-                if height.is_normal() {
-                    view.projection = Projection::Orthographic { height };
-                }
-                (frame.middle(), frame.sides().length())
-            }
-        };
-        // Balls without extent give no scale: one unit is as good as any other.
-        let distance = if distance.is_normal() && distance > 0.0 { distance } else { 1.0 };
-        let back = frame.depth() - distance;
-        view.eye = start + view.right * middle.x + view.up * middle.y + view.forward * back;
-        view.near = (distance * NEAR_SHARE).max(f64::MIN_POSITIVE);
-        // Balls beyond all numbers cannot be framed.
-        if view.eye.is_finite() { view } else { self }
-    }
-
     /// The view from an eye that was turned around `pivot`: by `yaw` radians around the up axis
     /// (to the right), then by `pitch` around the right axis (upwards). Nothing changes if a number is
     /// not finite.
@@ -338,6 +279,7 @@ fn direction(vector: DVec3) -> Option<DVec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Bounds;
 
     fn front() -> View {
         View::look_at(DVec3::new(0.0, 0.0, 10.0), DVec3::ZERO, DVec3::Y).unwrap()
@@ -379,44 +321,6 @@ mod tests {
         let view = front().with_size(4, 2).unwrap().with_orthographic(2.0).unwrap();
         assert_eq!(view.ray(0.0, 0.0), DVec2::new(-1.5, 0.5));
         assert_eq!(view.ray(3.0, 1.0), DVec2::new(1.5, -0.5));
-    }
-
-    #[test]
-    fn a_fitted_box_touches_the_margin_and_no_more() {
-        let bounds = Bounds { min: DVec3::new(1.0, 2.0, 3.0), max: DVec3::new(4.0, 8.0, 5.0) };
-        let wide = front().with_size(200, 100).unwrap();
-        for view in [wide.clone(), wide.with_orthographic(1.0).unwrap()] {
-            let view = view.orbited(DVec3::ZERO, 0.5, 0.3).fitted(&bounds);
-            let half = view.pixel_size() * 50.0;
-            let reach = bounds.corners().map(|corner| {
-                let p = view.to_camera(corner - view.eye());
-                assert!(p.z > view.near());
-                let depth = if view.is_perspective() { p.z } else { 1.0 };
-                (p.x.abs() / 2.0).max(p.y.abs()) / (depth * half)
-            });
-            let reach = reach.into_iter().fold(0.0, f64::max);
-            assert!((reach - FIT_SHARE).abs() < 1e-9, "{reach}");
-        }
-    }
-
-    #[test]
-    fn framed_balls_lie_in_the_view_wherever_they_are() {
-        let ball = |i: u32| (DVec3::new(1e7 + f64::from(i % 7), f64::from(i % 3), 5.0), 0.5);
-        for view in [front(), front().with_orthographic(1.0).unwrap()] {
-            let view = view.orbited(DVec3::ZERO, 1.0, 0.4).framing((0..50).map(ball));
-            let half = view.pixel_size() * 512.0;
-            for (center, radius) in (0..50).map(ball) {
-                let p = view.to_camera(center - view.eye());
-                let (slope, stretch) =
-                    if view.is_perspective() { (half, half.hypot(1.0)) } else { (0.0, 1.0) };
-                let room = if view.is_perspective() { slope * p.z } else { half };
-                assert!(p.x.abs().max(p.y.abs()) + radius * stretch <= room);
-                assert!(p.z - radius > view.near());
-            }
-        }
-        assert_eq!(front().framing([(DVec3::NAN, 1.0)]), front());
-        let point = front().framing([(DVec3::ONE, 0.0)]);
-        assert_eq!(point.eye(), DVec3::new(1.0, 1.0, 2.0));
     }
 
     #[test]

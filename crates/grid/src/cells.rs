@@ -94,15 +94,28 @@ impl Cells {
             return Err(Error::Resolution { dims });
         }
         #[expect(clippy::cast_possible_truncation, reason = "rounding is as good")]
-        let (scale, layer) = ((1.0 / width).min(f64::from(f32::MAX)) as f32, width as f32);
+        let (scale, layer) =
+            ((1.0 / width).min(f64::from(f32::MAX)) as f32, width.min(f64::from(f32::MAX)) as f32);
         let below = Vec3::from_array(layout.overflow.map(|[below, _]| f32::from(u8::from(below))));
         let dims = dims.map(|dim| u32::try_from(dim).unwrap_or(u32::MAX));
-        Ok(Self { dims, bounds: layout.inner, corner: min - below * layer, scale })
+        // Where that is beyond all numbers, the first cells are wider.
+        let corner = (min - below * layer).max(Vec3::splat(f32::MIN));
+        Ok(Self { dims, bounds: layout.inner, corner, scale })
     }
 
     /// The same cells; their outermost faces are those of this box around the data.
     pub(crate) fn around(self, bounds: Aabb) -> Self {
         Self { bounds, ..self }
+    }
+
+    /// All there is to know of the cells: dims, corner, scale and bounds.
+    pub(crate) fn parts(&self) -> ([u32; 3], Vec3, f32, Aabb) {
+        (self.dims, self.corner, self.scale, self.bounds)
+    }
+
+    /// The cells that have these parts.
+    pub(crate) fn from_parts(dims: [u32; 3], corner: Vec3, scale: f32, bounds: Aabb) -> Self {
+        Self { dims, bounds, corner, scale }
     }
 
     /// The number of cells along each axis.

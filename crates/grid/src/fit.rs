@@ -37,14 +37,25 @@ const TAIL: usize = 200;
 /// How far the inner box may go beyond the middle of the sample, in parts of its extent.
 const MARGIN: f64 = 0.5;
 
-/// The inner box of the records, and whether it leaves sampled ones out.
+/// The inner box of the records.
+pub(crate) fn inner<R: Record>(records: &[R]) -> Layout {
+    let sample: Vec<Vec3> = places(records.len()).map(|at| records[at].position()).collect();
+    inner_of(&sample)
+}
+
+/// Which of this many records to sample.
+pub(crate) fn places(records: usize) -> impl Iterator<Item = usize> {
+    let [least, most] = SAMPLES;
+    let count = (records / 64).clamp(least, most).min(records);
+    (0..count).map(move |i| place(i, count, records))
+}
+
+/// The inner box of the records that this sample was taken of.
 ///
 /// What is not finite is passed over. The box of no records is a point.
-pub(crate) fn inner<R: Record>(records: &[R]) -> Layout {
-    let [least, most] = SAMPLES;
-    let count = (records.len() / 64).clamp(least, most).min(records.len());
-    let positions = (0..count).map(|i| records[place(i, count, records.len())].position());
-    let sample: Vec<Vec3> = positions.filter(|position| position.is_finite()).collect();
+pub(crate) fn inner_of(sample: &[Vec3]) -> Layout {
+    let sample: Vec<Vec3> =
+        sample.iter().copied().filter(|position| position.is_finite()).collect();
     let mut values = vec![0.0; sample.len()];
     let mut layout =
         Layout { inner: Aabb { min: Vec3::ZERO, max: Vec3::ZERO }, overflow: [[false; 2]; 3] };

@@ -75,9 +75,6 @@ impl<R: Record> Scratch<R> {
     /// Sorts a bucket and measures its bricks.
     pub(crate) fn sort(&mut self, mut leaf: Leaf<'_, R>, how: How, found: &mut Bricks) {
         widest(Sort { scratch: self, leaf: &mut leaf, how, found });
-        if how.stable {
-            self.settle(&mut leaf.rows);
-        }
         if let Some(Lane::Words(colors)) =
             leaf.rows.colors.and_then(|lane| leaf.rows.lanes.get(lane))
         {
@@ -99,6 +96,9 @@ impl<R: Record> Scratch<R> {
         } else {
             let coder = how.coder.with(how.layout.digit(0..leaf.bits));
             self.sort_rows(&mut leaf.rows, (&coder, leaf.base), &mut found.codes);
+        }
+        if how.stable {
+            self.settle(&mut leaf.rows);
         }
         let (mut rest, mut start) = (&leaf.rows.records[..], leaf.start);
         found.bricks.reserve(self.lengths.len());

@@ -24,6 +24,8 @@ records. Beside them it needs 44 bytes for each brick, 4 more if there are color
 up to 20 more and about a megabyte for each thread. Cells without records cost nothing.
 */
 
+#[cfg(all(target_endian = "little", any(unix, windows)))]
+mod bricks;
 mod cells;
 mod census;
 mod codes;
@@ -36,6 +38,11 @@ mod partition;
 mod rows;
 mod sort;
 
+#[cfg(all(target_endian = "little", any(unix, windows)))]
+pub use crate::bricks::{
+    BrickFile, ConvertConfig, ConvertError, ConvertStage, ConvertStep, ConvertSummary, Invalid,
+    OpenError, Verify, convert, convert_watched,
+};
 pub use crate::{cells::Cells, error::Error, fit::Fit};
 
 use crate::{

@@ -3,6 +3,7 @@
 use crate::dispatch::lanes_of;
 use glam::Vec3;
 use puncta_core::{Aabb, Brick, Record};
+use std::ops::Range;
 use wide::f32x4;
 
 /// The brick of these records, the first of which is record `start`.
@@ -19,16 +20,27 @@ pub(crate) fn measure<R: Record>(members: &[R], start: u32, sides: f32x4) -> Bri
         most = lanes.fast_max(most);
         cubes += radius * radius * radius;
     }
+    #[expect(clippy::cast_possible_truncation, reason = "there are no more than MAX_RECORDS")]
+    let end = start + members.len() as u32;
+    describe(start..end, [least, most], cubes, sides)
+}
+
+/// The brick of records with these extremes and this sum of cubed radii.
+#[inline(always)]
+pub(crate) fn describe(
+    records: Range<u32>,
+    [least, most]: [f32x4; 2],
+    cubes: f64,
+    sides: f32x4,
+) -> Brick {
     let radius_max = most.to_array()[3];
     let corner = |lanes: f32x4| Vec3::from_slice(&lanes.to_array());
     let sides = sides.fast_max(most - least).fast_max(f32x4::splat(2.0 * radius_max));
     let volume = 4.0 / 3.0 * std::f64::consts::PI * cubes;
     #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
     let density = (volume / corner(sides).as_dvec3().element_product()) as f32;
-    #[expect(clippy::cast_possible_truncation, reason = "there are no more than MAX_RECORDS")]
-    let end = start + members.len() as u32;
     Brick {
-        records: start..end,
+        records,
         bounds: Aabb { min: corner(least), max: corner(most) },
         radius_max,
         density: if density.is_finite() { density } else { 0.0 },
