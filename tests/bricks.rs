@@ -82,7 +82,7 @@ fn a_converted_file_gives_the_same_picture() {
         let (original, converted) = (draw("a.xyz"), draw("a.bricks"));
         assert!(original == converted, "{more:?}: another picture");
     }
-    let other_grid = ["a.bricks", "--grid", "3", "--size", "9x9", "--verify"];
+    let other_grid = ["a.bricks", "--grid", "3", "--size", "9x9", "--unverified"];
     succeed(&folder, "render", &other_grid);
 }
 
@@ -106,7 +106,7 @@ fn what_cannot_be_converted_or_drawn_is_named() {
     let mut bytes = fs::read(&path).unwrap();
     bytes[4100] ^= 1;
     fs::write(&path, &bytes).unwrap();
-    let said = fail(&folder, "render", &["a.bricks", "--verify"]);
+    let said = fail(&folder, "render", &["a.bricks"]);
     assert!(said.contains("a.bricks: byte 4096: the checksum"), "{said}");
     fs::write(&path, &bytes[..5000]).unwrap();
     assert!(fail(&folder, "render", &["a.bricks"]).contains("5000"));

@@ -156,7 +156,7 @@ fn open_bricks(name: &str, options: &Options) -> Result<Input> {
     if options.radius.is_some() || options.radius_scale != 1.0 {
         bail!("{name}: the radii of a brick file cannot be changed: choose them when it is made");
     }
-    let verify = if options.verify { Verify::Whole } else { Verify::Tables };
+    let verify = if options.unverified { Verify::Tables } else { Verify::Whole };
     let spinner = Bar::spinner("opening");
     let file = BrickFile::open_with(name, verify)?;
     spinner.finish();

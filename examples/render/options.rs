@@ -85,9 +85,10 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(crate) strict: bool,
 
-    /// Check every byte of a brick file, and not only its tables
+    /// Check only the tables of a brick file, and not every byte: it opens at once, but what was
+    /// altered in it may go unnoticed
     #[arg(long)]
-    pub(crate) verify: bool,
+    pub(crate) unverified: bool,
 
     /// Grid cells along the longest side; by default those of a brick file, else some 512
     /// records share a cell
