@@ -39,6 +39,7 @@ mod sort;
 pub use crate::{cells::Cells, error::Error, fit::Fit};
 
 use crate::{
+    census::Census,
     codes::{Coder, Layout},
     leaf::How,
     rows::Rows,
@@ -170,17 +171,15 @@ impl Grid {
             Fit::Robust => fit::inner(records),
             Fit::Whole => fit::whole(census::bounds(records)?),
         };
-        let (cells, layout, coder, census) = loop {
-            let cells = Cells::new(&place, records.len(), config.resolution)?;
-            let layout = sort::layout::<R>(&cells, records.len());
-            let coder = Coder::new(&cells, layout.block());
-            let census = census::take(records, &coder)?;
-            let overflow = fit::overflow(&place, &census.bounds, cells.width());
-            if place.overflow == overflow {
-                break (cells.around(census.bounds), layout, coder, census);
-            }
+        let mut survey = Survey::new(records, &place, config.resolution)?;
+        let overflow = fit::overflow(&place, &survey.census.bounds, survey.cells.width());
+        if overflow != place.overflow {
+            // Once is enough: cells are as wide as before.
             place.overflow = overflow;
-        };
+            survey = Survey::new(records, &place, config.resolution)?;
+        }
+        let Survey { cells, layout, coder, census } = survey;
+        let cells = cells.around(census.bounds);
         let stable = config.order == Order::Stable;
         let leaf = sort::LeafRows::new::<R>(&cells, rows.len());
         let how = How { coder, layout, leaf, sides: cells.sides(), stable };
@@ -239,6 +238,28 @@ impl Grid {
 impl AsRef<[Brick]> for Grid {
     fn as_ref(&self) -> &[Brick] {
         &self.bricks
+    }
+}
+
+/// Cells, and what a look at all records finds for them.
+struct Survey {
+    cells: Cells,
+    layout: Layout,
+    coder: Coder,
+    census: Census,
+}
+
+impl Survey {
+    fn new<R: Record>(
+        records: &[R],
+        place: &cells::Layout,
+        resolution: Resolution,
+    ) -> Result<Self, Error> {
+        let cells = Cells::new(place, records.len(), resolution)?;
+        let layout = sort::layout::<R>(&cells, records.len());
+        let coder = Coder::new(&cells, layout.block());
+        let census = census::take(records, &coder)?;
+        Ok(Self { cells, layout, coder, census })
     }
 }
 
