@@ -152,12 +152,16 @@ impl Grid {
     ///
     /// # Errors
     ///
-    /// As [`Grid::sort`], and when the scene is not valid.
+    /// As [`Grid::sort`], and when the scene is not valid. The scene is as it was then.
     pub fn sort_scene<R: Record>(scene: &mut Scene<R>, config: &GridConfig) -> Result<Self, Error> {
         scene.validate()?;
-        let count = scene.records.len();
+        let (count, had_ids) = (scene.records.len(), scene.attributes.ids.is_some());
         scene.attributes.ids.get_or_insert_with(|| order(count).into());
-        Self::sort_rows(Rows::of_scene(scene), config)
+        let sorted = Self::sort_rows(Rows::of_scene(scene), config);
+        if sorted.is_err() && !had_ids {
+            scene.attributes.ids = None;
+        }
+        sorted
     }
 
     fn sort_rows<R: Record>(rows: Rows<'_, R>, config: &GridConfig) -> Result<Self, Error> {
