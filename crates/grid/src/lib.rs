@@ -21,7 +21,8 @@ the thesis whose methods puncta is built on: cells are cubes, and records are so
 counting. The thesis sorts in one thread, straight into cells. Here all cores sort, in two steps that
 suit the memory: into some thousand buckets first, then each bucket within the cache. It owns no
 records. Beside them it needs 44 bytes for each brick, 4 more if there are colors, and while sorting
-up to 20 more and about a megabyte for each thread. Cells without records cost nothing.
+up to 20 more, a megabyte, and up to 2.5 megabytes for each thread: those only if cells and records
+are many. Cells without records cost nothing.
 */
 
 mod cells;
