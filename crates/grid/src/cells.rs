@@ -30,6 +30,9 @@ pub(crate) const CELLS_MAX: u64 = 1 << 30;
 /// The largest number of cells along an axis: from here on `f32` cannot tell them apart well.
 pub(crate) const AXIS_MAX: u64 = 1 << 20;
 
+/// The largest number of cells that are aimed at when nobody asks for a number of cells.
+const AUTOMATIC_MAX: f64 = CELLS_MAX as f64 * 0.24;
+
 /// Equal cubes that fill a box; the outermost ones reach to the ends of the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cells {
@@ -69,10 +72,10 @@ impl Cells {
             Resolution::LongestSide(0) => return Err(Error::Resolution { dims: [0; 3] }),
             Resolution::LongestSide(cells) => longest / f64::from(cells),
             Resolution::RecordsPerBrick(target) => {
-                // Less than there may be, as whole numbers of cells are a little more than wished.
-                let bricks = records as f64 / f64::from(target.max(1));
+                // Less than there may be: a side of one cell can become two cells and two layers.
+                let bricks = (records as f64 / f64::from(target.max(1))).min(AUTOMATIC_MAX);
                 let most = AXIS_MAX as f64 * 0.5;
-                longest / cells_along_longest(sides, bricks.min(CELLS_MAX as f64 * 0.6)).min(most)
+                longest / cells_along_longest(sides, bricks).min(most)
             }
             Resolution::Width(width) if width.is_normal() && width > 0.0 => f64::from(width),
             Resolution::Width(width) => return Err(Error::Width { width }),
@@ -94,12 +97,11 @@ impl Cells {
             return Err(Error::Resolution { dims });
         }
         #[expect(clippy::cast_possible_truncation, reason = "rounding is as good")]
-        let (scale, layer) =
-            ((1.0 / width).min(f64::from(f32::MAX)) as f32, width.min(f64::from(f32::MAX)) as f32);
-        let below = Vec3::from_array(layout.overflow.map(|[below, _]| f32::from(u8::from(below))));
+        let (scale, layer) = ((1.0 / width).min(f64::from(f32::MAX)) as f32, width as f32);
+        // A layer that is not there may be infinitely thick, and one that is there reach too far.
+        let below = layout.overflow.map(|[below, _]| if below { layer } else { 0.0 });
+        let corner = (min - Vec3::from_array(below)).max(Vec3::MIN);
         let dims = dims.map(|dim| u32::try_from(dim).unwrap_or(u32::MAX));
-        // Where that is beyond all numbers, the first cells are wider.
-        let corner = (min - below * layer).max(Vec3::splat(f32::MIN));
         Ok(Self { dims, bounds: layout.inner, corner, scale })
     }
 
@@ -307,6 +309,31 @@ mod tests {
             let cells = cells([0.0; 3], sides, Resolution::RecordsPerBrick(2)).unwrap();
             assert!((250..1300).contains(&cells.count()), "{sides:?}: {:?}", cells.dims());
         }
+    }
+
+    #[test]
+    fn a_number_of_records_per_brick_is_never_refused() {
+        let sides = [0.0, 1e-30, 1e-6, 1e-3, 0.015, 0.3, 1.0].map(|side| side * 1.001);
+        let most = puncta_core::MAX_RECORDS;
+        for (y, z) in sides.iter().flat_map(|&y| sides.map(|z| (y, z))) {
+            for records in [1, 1000, 1 << 20, 300_000_000, 600_000_000, most] {
+                let inner = Aabb { min: Vec3::ZERO, max: Vec3::new(1.001, y, z) };
+                let layout = Layout { inner, overflow: [[true; 2]; 3] };
+                let cells = Cells::new(&layout, records, Resolution::RecordsPerBrick(0));
+                assert!(cells.is_ok(), "{records} in {inner:?}: {cells:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn corners_are_finite() {
+        let most = [f32::MAX; 3];
+        let cells = cells([f32::MIN; 3], most, Resolution::RecordsPerBrick(5000)).unwrap();
+        assert_eq!(cells.corner(), Vec3::MIN);
+        let inner = Aabb { min: Vec3::splat(-3e38), max: Vec3::splat(3e38) };
+        let layout = Layout { inner, overflow: [[true; 2]; 3] };
+        let cells = Cells::new(&layout, 1000, Resolution::LongestSide(10)).unwrap();
+        assert_eq!(cells.corner(), Vec3::MIN);
     }
 
     #[test]

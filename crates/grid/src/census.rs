@@ -159,6 +159,7 @@ fn check<R: Record>(records: &[R], extremes: Extremes) -> Result<Aabb, Error> {
             }
         }
     }
-    let corner = |lanes: f32x4| Vec3::from_slice(&lanes.to_array());
+    // Of two zeros, which one is met first hangs on the threads; adding zero makes both positive.
+    let corner = |lanes: f32x4| Vec3::from_slice(&lanes.to_array()) + 0.0;
     Ok(Aabb { min: corner(extremes.least), max: corner(extremes.most) })
 }

@@ -21,7 +21,8 @@ the thesis whose methods puncta is built on: cells are cubes, and records are so
 counting. The thesis sorts in one thread, straight into cells. Here all cores sort, in two steps that
 suit the memory: into some thousand buckets first, then each bucket within the cache. It owns no
 records. Beside them it needs 44 bytes for each brick, 4 more if there are colors, and while sorting
-up to 20 more and about a megabyte for each thread. Cells without records cost nothing.
+up to 20 more, a megabyte, and up to 2.5 megabytes for each thread: those only if cells and records
+are many. Cells without records cost nothing.
 */
 
 #[cfg(all(target_endian = "little", any(unix, windows)))]
@@ -46,6 +47,7 @@ pub use crate::bricks::{
 pub use crate::{cells::Cells, error::Error, fit::Fit};
 
 use crate::{
+    census::Census,
     codes::{Coder, Layout},
     leaf::How,
     rows::Rows,
@@ -158,12 +160,16 @@ impl Grid {
     ///
     /// # Errors
     ///
-    /// As [`Grid::sort`], and when the scene is not valid.
+    /// As [`Grid::sort`], and when the scene is not valid. The scene is as it was then.
     pub fn sort_scene<R: Record>(scene: &mut Scene<R>, config: &GridConfig) -> Result<Self, Error> {
         scene.validate()?;
-        let count = scene.records.len();
+        let (count, had_ids) = (scene.records.len(), scene.attributes.ids.is_some());
         scene.attributes.ids.get_or_insert_with(|| order(count).into());
-        Self::sort_rows(Rows::of_scene(scene), config)
+        let sorted = Self::sort_rows(Rows::of_scene(scene), config);
+        if sorted.is_err() && !had_ids {
+            scene.attributes.ids = None;
+        }
+        sorted
     }
 
     fn sort_rows<R: Record>(rows: Rows<'_, R>, config: &GridConfig) -> Result<Self, Error> {
@@ -177,17 +183,15 @@ impl Grid {
             Fit::Robust => fit::inner(records),
             Fit::Whole => fit::whole(census::bounds(records)?),
         };
-        let (cells, layout, coder, census) = loop {
-            let cells = Cells::new(&place, records.len(), config.resolution)?;
-            let layout = sort::layout::<R>(&cells, records.len());
-            let coder = Coder::new(&cells, layout.block());
-            let census = census::take(records, &coder)?;
-            let overflow = fit::overflow(&place, &census.bounds, cells.width());
-            if place.overflow == overflow {
-                break (cells.around(census.bounds), layout, coder, census);
-            }
+        let mut survey = Survey::new(records, &place, config.resolution)?;
+        let overflow = fit::overflow(&place, &survey.census.bounds, survey.cells.width());
+        if overflow != place.overflow {
+            // Once is enough: cells are as wide as before.
             place.overflow = overflow;
-        };
+            survey = Survey::new(records, &place, config.resolution)?;
+        }
+        let Survey { cells, layout, coder, census } = survey;
+        let cells = cells.around(census.bounds);
         let stable = config.order == Order::Stable;
         let leaf = sort::LeafRows::new::<R>(&cells, rows.len());
         let how = How { coder, layout, leaf, sides: cells.sides(), stable };
@@ -246,6 +250,28 @@ impl Grid {
 impl AsRef<[Brick]> for Grid {
     fn as_ref(&self) -> &[Brick] {
         &self.bricks
+    }
+}
+
+/// Cells, and what a look at all records finds for them.
+struct Survey {
+    cells: Cells,
+    layout: Layout,
+    coder: Coder,
+    census: Census,
+}
+
+impl Survey {
+    fn new<R: Record>(
+        records: &[R],
+        place: &cells::Layout,
+        resolution: Resolution,
+    ) -> Result<Self, Error> {
+        let cells = Cells::new(place, records.len(), resolution)?;
+        let layout = sort::layout::<R>(&cells, records.len());
+        let coder = Coder::new(&cells, layout.block());
+        let census = census::take(records, &coder)?;
+        Ok(Self { cells, layout, coder, census })
     }
 }
 

@@ -47,8 +47,19 @@ const ROUNDS: usize = 2;
 /// A place where rows are unsorted: the first of them and the one after the last.
 type Zone = Range<u32>;
 
-/// Moves rows into buckets; `homes` are the runs of the buckets.
+/// Moves rows into buckets; `homes` are the runs of the buckets, one for each digit.
+///
+/// # Panics
+///
+/// When the homes do not suit the rows or the digits.
 pub(crate) fn partition<R: Record>(rows: &mut Rows<'_, R>, coder: &Coder, homes: &[Zone]) {
+    // What all that is unsafe below relies on.
+    assert_eq!(homes.len(), coder.digit().values(), "there is not one home for each digit");
+    let end = homes
+        .iter()
+        .try_fold(0, |end, home| (home.start == end && home.end >= end).then_some(home.end));
+    assert_eq!(end.map(|end| end as usize), Some(rows.len()), "the homes are not all rows");
+    assert!(rows.lanes.iter().all(|lane| lane.len() == rows.len()), "a column has other rows");
     let mut zones = homes.to_vec();
     for round in 0.. {
         let left: usize = zones.iter().map(Zone::len).sum();

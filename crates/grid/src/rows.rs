@@ -74,6 +74,13 @@ impl<'a> Lane<'a> {
         }
     }
 
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Words(words) => words.len(),
+            Self::Bytes(bytes) => bytes.len(),
+        }
+    }
+
     fn reborrow(&mut self) -> Lane<'_> {
         match self {
             Self::Words(words) => Lane::Words(words),

@@ -50,7 +50,7 @@ pub(crate) struct LeafRows {
 
 impl LeafRows {
     pub(crate) fn new<R>(cells: &Cells, records: usize) -> Self {
-        let bytes = (96 << 10) + 32 * cells.count().min(records);
+        let bytes = cells.count().min(records).saturating_mul(32).saturating_add(96 << 10);
         let rows = |bytes: usize| (bytes / (size_of::<R>() + SCRATCH_BYTES)).max(64);
         Self { best: rows(bytes.min(3 << 19)), most: rows(bytes.min(5 << 19)) }
     }
@@ -235,6 +235,9 @@ impl Ordered {
         let mut all = self.all.into_inner().unwrap_or_else(PoisonError::into_inner);
         let ready = self.ready.into_inner().unwrap_or_else(PoisonError::into_inner);
         ready.waiting.into_values().for_each(|mut bricks| append(&mut all, &mut bricks));
+        all.bricks.shrink_to_fit();
+        all.codes.shrink_to_fit();
+        all.colors.shrink_to_fit();
         all
     }
 }
@@ -261,5 +264,24 @@ fn append(all: &mut Bricks, bricks: &mut Bricks) {
 fn make_room<T>(values: &mut Vec<T>, count: usize) {
     if values.capacity() - values.len() < count {
         values.reserve_exact(count.max(values.len() / 4));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bricks_that_come_while_others_are_appended_are_not_forgotten() {
+        let ordered = Ordered::default();
+        let bricks = |code: u32| Bricks { codes: vec![code], ..Bricks::default() };
+        ordered.add(1, bricks(1));
+        let appending = ordered.all.lock().unwrap();
+        for index in [0, 3, 2] {
+            ordered.add(index, bricks(u32::try_from(index).unwrap()));
+        }
+        assert!(appending.codes.is_empty());
+        drop(appending);
+        assert_eq!(ordered.into_all().codes, [0, 1, 2, 3]);
     }
 }

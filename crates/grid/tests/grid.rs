@@ -143,6 +143,69 @@ fn no_records_make_no_bricks() {
 }
 
 #[test]
+fn strays_have_bricks_of_their_own() {
+    let town: Vec<Sphere> = (0..10_000_u16)
+        .map(|i| Sphere::new([f32::from(i % 100), f32::from(i / 100), 0.0], 0.5))
+        .collect();
+    let config = GridConfig { resolution: Resolution::Width(10.0), ..GridConfig::default() };
+    let plain = Grid::sort(&mut town.clone(), &config).unwrap();
+    assert_eq!(plain.dims(), [10, 10, 1]);
+    for axis in 0..3 {
+        for far in [-1e6_f32, 1e6] {
+            let mut records = town.clone();
+            let mut stray = Sphere::new([50.0, 50.0, 0.0], 0.5);
+            stray.center[axis] = far;
+            records.insert(5000, stray);
+            let grid = Grid::sort(&mut records, &config).unwrap();
+            let mut dims = plain.dims();
+            dims[axis] += 1;
+            assert_eq!(grid.dims(), dims);
+            assert!((grid.cells().width() - 10.0).abs() < 1e-5, "cells are as wide as asked");
+            let lengths = grid.bricks().iter().map(|brick| brick.records.len());
+            assert_eq!(lengths.filter(|&length| length == 1).count(), 1, "the stray is alone");
+            assert!(grid.bricks().len() == 101 && grid.brick_at([0; 3]).is_some() == (far > 0.0));
+        }
+    }
+}
+
+#[test]
+fn a_few_strays_do_not_make_cells_larger() {
+    let mut records: Vec<Sphere> = (0..10_000_u16)
+        .map(|i| Sphere::new([f32::from(i % 100), f32::from(i / 100), 0.0], 0.5))
+        .collect();
+    for i in 0..30 {
+        records.insert(i * 300, Sphere::new([1e6 + i as f32, -1e5 * i as f32, 7e5], 0.5));
+    }
+    let grid = Grid::sort(&mut records, &GridConfig::longest_side(20)).unwrap();
+    assert!(grid.cells().width() < 15.0, "{}", grid.cells().width());
+    let whole = GridConfig { fit: Fit::Whole, ..GridConfig::longest_side(20) };
+    let grid = Grid::sort(&mut records, &whole).unwrap();
+    assert!(grid.cells().width() > 1e5, "{}", grid.cells().width());
+}
+
+#[test]
+fn the_first_of_the_records_that_are_wrong_is_named_and_nothing_changes() {
+    let count = 70_000_usize;
+    let good = |i: usize| Sphere::new([(i * 7919 % 997) as f32, (i % 31) as f32, 0.0], 1.0);
+    let mut records: Vec<Sphere> = (0..count).map(good).collect();
+    for index in [60_000, 100, 40_000] {
+        records[index].center[2] = f32::INFINITY;
+        records[index + 1].radius = -1.0;
+    }
+    let mut scene = Scene::new(records);
+    let before = scene.clone();
+    for fit in [Fit::Robust, Fit::Whole] {
+        let config = GridConfig { fit, ..GridConfig::default() };
+        let error = Grid::sort_scene(&mut scene, &config).unwrap_err();
+        assert!(matches!(error, Error::Position { index: 100, .. }), "{error}");
+        assert!(scene == before, "a scene that cannot be sorted is changed");
+    }
+    let mut nowhere = vec![Sphere::new([f32::NAN; 3], 1.0); 10_000];
+    let error = Grid::sort(&mut nowhere, &GridConfig::default()).unwrap_err();
+    assert!(matches!(error, Error::Position { index: 0, .. }), "{error}");
+}
+
+#[test]
 fn records_that_no_grid_can_hold_are_named() {
     let sort = |sphere| Grid::sort(&mut [Sphere::default(), sphere], &GridConfig::default());
     let error = sort(Sphere::new([0.0, f32::NAN, 0.0], 1.0)).unwrap_err();

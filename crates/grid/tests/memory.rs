@@ -87,6 +87,22 @@ fn memory_grows_with_bricks_and_threads_and_not_with_records() {
     }
 }
 
+/// Many records in few bricks of many cells, where the buffers of threads are as large as they get.
+fn buffers_of_threads_are_bounded() {
+    for threads in [1, 2, 4] {
+        let mut records = cube(1_000_000, 0);
+        for (index, sphere) in records.iter_mut().enumerate() {
+            let corner = if index % 2 == 0 { 0.0 } else { 20.0 };
+            sphere.center = sphere.center.map(|x| corner + x);
+        }
+        let config = GridConfig { fit: Fit::Whole, ..GridConfig::longest_side(100) };
+        let (peak, bricks) = measure(threads, || Grid::sort(&mut records, &config).unwrap());
+        let allowed = 64 * bricks * threads + (1 << 20) + threads * (5 << 19);
+        assert!(bricks < 1000, "{bricks} bricks");
+        assert!(peak <= allowed, "{threads} threads: {peak} bytes are more than {allowed}");
+    }
+}
+
 fn columns_need_no_more_than_a_buffer() {
     let mut scene = Scene::new(cube(1_000_000, 0));
     scene.keep_order();
@@ -99,5 +115,6 @@ fn columns_need_no_more_than_a_buffer() {
 #[test]
 fn memory_is_bounded() {
     memory_grows_with_bricks_and_threads_and_not_with_records();
+    buffers_of_threads_are_bounded();
     columns_need_no_more_than_a_buffer();
 }

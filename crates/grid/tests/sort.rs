@@ -30,12 +30,17 @@ impl Random {
     }
 }
 
+/// A color for an index, that other columns do not have.
+fn color(index: u32) -> [u8; 4] {
+    index.wrapping_mul(2_654_435_769).to_be_bytes()
+}
+
 /// Sorts a scene with all kinds of columns, and checks it against the plain twin.
 fn check(records: &[Sphere], config: &GridConfig) {
     let count = records.len() as u32;
     let mut scene = Scene::new(records.to_vec());
-    scene.attributes.colors = Some((0..count).map(u32::to_le_bytes).collect());
-    scene.attributes.elements = Some((0..count).map(|i| (i % 251) as u8).collect());
+    scene.attributes.colors = Some((0..count).map(color).collect());
+    scene.attributes.elements = Some((0..count).map(|i| (i % 257) as u8).collect());
     for factor in [1.0, -0.5] {
         let values = (0..count).map(|i| i as f32 * factor).collect();
         scene.attributes.scalars.push(Scalar { name: factor.to_string(), values });
@@ -45,8 +50,8 @@ fn check(records: &[Sphere], config: &GridConfig) {
     naive::check(records, &scene.records, &ids, &grid);
     for (row, &id) in ids.iter().enumerate() {
         assert_eq!(scene.records[row], records[id as usize]);
-        assert_eq!(scene.attributes.colors.as_ref().unwrap()[row], id.to_le_bytes());
-        assert_eq!(scene.attributes.elements.as_ref().unwrap()[row], (id % 251) as u8);
+        assert_eq!(scene.attributes.colors.as_ref().unwrap()[row], color(id));
+        assert_eq!(scene.attributes.elements.as_ref().unwrap()[row], (id % 257) as u8);
         assert_eq!(scene.attributes.scalars[0].values[row], id as f32);
         assert_eq!(scene.attributes.scalars[1].values[row], id as f32 * -0.5);
     }
@@ -116,6 +121,18 @@ fn clusters_are_split_again_and_again() {
         check(&records, &GridConfig { fit, ..config(resolution) });
     }
     check(&records, &config(Resolution::RecordsPerBrick(1)));
+}
+
+#[test]
+fn very_large_buckets_are_split_by_all_threads() {
+    let mut random = Random(13);
+    let mut records = random.cube(1000, 1000.0);
+    records.extend(random.cube(1_200_000, 20.0).iter().map(|sphere| {
+        // Not the first bucket of all.
+        Sphere::new(sphere.center.map(|x| x + 720.0), sphere.radius)
+    }));
+    let resolution = Resolution::LongestSide(1000);
+    check(&records, &GridConfig { fit: Fit::Whole, ..config(resolution) });
 }
 
 #[test]
