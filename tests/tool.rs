@@ -190,7 +190,7 @@ fn odd_options_are_errors_too() {
         let said = tool.fail(&[&["two.xyz"], &arguments[..]].concat());
         assert!(said.contains(named), "{arguments:?}: {said}");
     }
-    assert!(tool.fail(&["cube:n=100", "--grid", "1000"]).contains("cells"));
+    assert!(tool.fail(&["cube:n=100", "--grid", "100000"]).contains("cells"));
     assert!(!tool.path("puncta.png").exists(), "a picture was written all the same");
 }
 

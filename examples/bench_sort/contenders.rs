@@ -4,7 +4,10 @@ use clap::ValueEnum;
 use puncta::{Cells, Grid, GridConfig, GridError, Record, Sphere};
 use rayon::prelude::*;
 use rdst::{RadixKey, RadixSort};
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::{
+    any::Any,
+    sync::atomic::{AtomicU32, Ordering::Relaxed},
+};
 
 /// Something that is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -33,26 +36,29 @@ impl Contender {
         matches!(self, Self::Thesis | Self::Rayon)
     }
 
-    /// Runs it on `work`, a copy of `records`.
+    /// Runs it on `work`, a copy of `records`; what comes of it is to be dropped after the clock was
+    /// read.
     pub(crate) fn run(
         self,
         records: &[Sphere],
         work: &mut [Sphere],
         grid: u32,
         cells: &Cells,
-    ) -> Result<(), GridError> {
+    ) -> Result<Box<dyn Any>, GridError> {
         match self {
             Self::Copy1 => work.copy_from_slice(records),
             Self::Copy2 => copy_by_two(records, work),
-            Self::Puncta => drop(Grid::sort(work, &GridConfig::longest_side(grid))?),
-            Self::Thesis => drop(thesis(work, cells)),
+            Self::Puncta => {
+                return Ok(Box::new(Grid::sort(work, &GridConfig::longest_side(grid))?));
+            }
+            Self::Thesis => return Ok(Box::new(thesis(work, cells))),
             Self::Rayon => work.par_sort_unstable_by_key(|record| flat(cells, record)),
             Self::Rdst => {
                 Keyed::prepare(cells);
                 Keyed::cast(work).radix_sort_unstable();
             }
         }
-        Ok(())
+        Ok(Box::new(()))
     }
 
     /// Whether the records of each cell are next to each other.

@@ -47,7 +47,7 @@ pub struct Cells {
 
 /// Where the cells of a grid lie, apart from its resolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Layout {
+pub(crate) struct Placement {
     /// The box that the cells fill.
     pub(crate) inner: Aabb,
     /// For each axis, whether a layer of cells for what lies below the box is needed, and above.
@@ -61,11 +61,11 @@ impl Cells {
 
     /// The cells over a box for this many records.
     pub(crate) fn new(
-        layout: &Layout,
+        placement: &Placement,
         records: usize,
         resolution: Resolution,
     ) -> Result<Self, Error> {
-        let Aabb { min, max } = layout.inner;
+        let Aabb { min, max } = placement.inner;
         let sides = max.as_dvec3() - min.as_dvec3();
         let longest = sides.max_element();
         let width = match resolution {
@@ -82,14 +82,15 @@ impl Cells {
         };
         // Cells that are thinner than the spacing of the numbers themselves would hold nothing. A
         // point has no extent and one cell; its width is as good as any other.
-        let width = width.max(spacing(&layout.inner));
+        let width = width.max(spacing(&placement.inner));
         let width = if width > 0.0 { width } else { 1.0 };
         // What rounding adds to a whole number is no cell of its own.
         let cells = |side: f64| (side / width * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
         let inner = sides.to_array().map(|side| cells(side) as u64);
         let [x, y, z] = std::array::from_fn(|axis| {
-            inner[axis] + layout.overflow[axis].iter().map(|&layer| u64::from(layer)).sum::<u64>()
+            inner[axis]
+                + placement.overflow[axis].iter().map(|&layer| u64::from(layer)).sum::<u64>()
         });
         let total = x.checked_mul(y).and_then(|xy| xy.checked_mul(z));
         let dims = [x, y, z];
@@ -99,10 +100,10 @@ impl Cells {
         #[expect(clippy::cast_possible_truncation, reason = "rounding is as good")]
         let (scale, layer) = ((1.0 / width).min(f64::from(f32::MAX)) as f32, width as f32);
         // A layer that is not there may be infinitely thick, and one that is there reach too far.
-        let below = layout.overflow.map(|[below, _]| if below { layer } else { 0.0 });
+        let below = placement.overflow.map(|[below, _]| if below { layer } else { 0.0 });
         let corner = (min - Vec3::from_array(below)).max(Vec3::MIN);
         let dims = dims.map(|dim| u32::try_from(dim).unwrap_or(u32::MAX));
-        Ok(Self { dims, bounds: layout.inner, corner, scale })
+        Ok(Self { dims, bounds: placement.inner, corner, scale })
     }
 
     /// The same cells; their outermost faces are those of this box around the data.
@@ -271,7 +272,7 @@ mod tests {
 
     fn cells(min: [f32; 3], max: [f32; 3], resolution: Resolution) -> Result<Cells, Error> {
         let inner = Aabb { min: min.into(), max: max.into() };
-        Cells::new(&Layout { inner, overflow: [[false; 2]; 3] }, 1000, resolution)
+        Cells::new(&Placement { inner, overflow: [[false; 2]; 3] }, 1000, resolution)
     }
 
     #[test]
@@ -318,8 +319,8 @@ mod tests {
         for (y, z) in sides.iter().flat_map(|&y| sides.map(|z| (y, z))) {
             for records in [1, 1000, 1 << 20, 300_000_000, 600_000_000, most] {
                 let inner = Aabb { min: Vec3::ZERO, max: Vec3::new(1.001, y, z) };
-                let layout = Layout { inner, overflow: [[true; 2]; 3] };
-                let cells = Cells::new(&layout, records, Resolution::RecordsPerBrick(0));
+                let placement = Placement { inner, overflow: [[true; 2]; 3] };
+                let cells = Cells::new(&placement, records, Resolution::RecordsPerBrick(0));
                 assert!(cells.is_ok(), "{records} in {inner:?}: {cells:?}");
             }
         }
@@ -331,8 +332,8 @@ mod tests {
         let cells = cells([f32::MIN; 3], most, Resolution::RecordsPerBrick(5000)).unwrap();
         assert_eq!(cells.corner(), Vec3::MIN);
         let inner = Aabb { min: Vec3::splat(-3e38), max: Vec3::splat(3e38) };
-        let layout = Layout { inner, overflow: [[true; 2]; 3] };
-        let cells = Cells::new(&layout, 1000, Resolution::LongestSide(10)).unwrap();
+        let placement = Placement { inner, overflow: [[true; 2]; 3] };
+        let cells = Cells::new(&placement, 1000, Resolution::LongestSide(10)).unwrap();
         assert_eq!(cells.corner(), Vec3::MIN);
     }
 

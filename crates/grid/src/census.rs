@@ -4,7 +4,7 @@
 use crate::{
     Error,
     codes::{Coder, RUN},
-    dispatch::{AHEAD, Kernel, lanes_of, prefetch, widest},
+    dispatch::{Kernel, STREAM_AHEAD, lanes_of, prefetch, widest},
 };
 use glam::Vec3;
 use puncta_core::{Aabb, Record};
@@ -118,7 +118,7 @@ impl<R: Record> Kernel for Look<'_, R> {
         for records in self.records.chunks(RUN) {
             self.coder.code(records, &mut digits);
             for (records, digits) in records.chunks(4).zip(digits.chunks(4)) {
-                prefetch(records, AHEAD);
+                prefetch(records, STREAM_AHEAD);
                 for (record, &digit) in records.iter().zip(digits) {
                     extremes.add(lanes_of(record));
                     self.counts[digit as usize] += 1;
@@ -139,7 +139,7 @@ impl<R: Record> Kernel for Span<'_, R> {
     fn run(self) -> Extremes {
         let mut extremes = Extremes::NONE;
         for records in self.0.chunks(4) {
-            prefetch(records, AHEAD);
+            prefetch(records, STREAM_AHEAD);
             records.iter().for_each(|record| extremes.add(lanes_of(record)));
         }
         extremes

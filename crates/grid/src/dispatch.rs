@@ -4,7 +4,7 @@ use puncta_core::Record;
 use wide::f32x4;
 
 /// How many bytes ahead streams are prefetched.
-pub(crate) const AHEAD: usize = 4096;
+pub(crate) const STREAM_AHEAD: usize = 4096;
 
 /// A loop that is worth compiling for wider instructions.
 pub(crate) trait Kernel {

@@ -13,7 +13,7 @@ cell beyond the inner box, a layer of cells is added on that side, so that stray
 with others.
 */
 
-use crate::cells::Layout;
+use crate::cells::Placement;
 use glam::Vec3;
 use puncta_core::{Aabb, Record};
 
@@ -38,7 +38,7 @@ const TAIL: usize = 200;
 const MARGIN: f64 = 0.5;
 
 /// The inner box of the records.
-pub(crate) fn inner<R: Record>(records: &[R]) -> Layout {
+pub(crate) fn inner<R: Record>(records: &[R]) -> Placement {
     let sample: Vec<Vec3> = places(records.len()).map(|at| records[at].position()).collect();
     inner_of(&sample)
 }
@@ -53,24 +53,24 @@ pub(crate) fn places(records: usize) -> impl Iterator<Item = usize> {
 /// The inner box of the records that this sample was taken of.
 ///
 /// What is not finite is passed over. The box of no records is a point.
-pub(crate) fn inner_of(sample: &[Vec3]) -> Layout {
+pub(crate) fn inner_of(sample: &[Vec3]) -> Placement {
     let sample: Vec<Vec3> =
         sample.iter().copied().filter(|position| position.is_finite()).collect();
     let mut values = vec![0.0; sample.len()];
-    let mut layout =
-        Layout { inner: Aabb { min: Vec3::ZERO, max: Vec3::ZERO }, overflow: [[false; 2]; 3] };
+    let mut placement =
+        Placement { inner: Aabb { min: Vec3::ZERO, max: Vec3::ZERO }, overflow: [[false; 2]; 3] };
     for axis in 0..3 {
         values.iter_mut().zip(&sample).for_each(|(value, position)| *value = position[axis]);
         let [low, high] = middle(&mut values);
-        layout.inner.min[axis] = low;
-        layout.inner.max[axis] = high;
+        placement.inner.min[axis] = low;
+        placement.inner.max[axis] = high;
     }
-    layout
+    placement
 }
 
 /// The box of all records.
-pub(crate) fn whole(bounds: Aabb) -> Layout {
-    Layout { inner: bounds, overflow: [[false; 2]; 3] }
+pub(crate) fn whole(bounds: Aabb) -> Placement {
+    Placement { inner: bounds, overflow: [[false; 2]; 3] }
 }
 
 /// The index of sample `i` of `count`: somewhere in the `i`-th of as many equal runs of the records.
@@ -101,8 +101,8 @@ fn middle(values: &mut [f32]) -> [f32; 2] {
 }
 
 /// Layers of cells where the data reach beyond the inner box.
-pub(crate) fn overflow(layout: &Layout, bounds: &Aabb, width: f32) -> [[bool; 2]; 3] {
-    let Aabb { min, max } = layout.inner;
+pub(crate) fn overflow(placement: &Placement, bounds: &Aabb, width: f32) -> [[bool; 2]; 3] {
+    let Aabb { min, max } = placement.inner;
     std::array::from_fn(|axis| {
         let reach = 0.5 * width;
         [bounds.min[axis] < min[axis] - reach, bounds.max[axis] > max[axis] + reach]

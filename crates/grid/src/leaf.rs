@@ -10,7 +10,7 @@ places that were found for the records.
 
 use crate::{
     codes::{Coder, Layout, RUN},
-    dispatch::{AHEAD, Kernel, prefetch, widest},
+    dispatch::{Kernel, STREAM_AHEAD, prefetch, widest},
     measure::{mean_color, measure},
     rows::{Lane, Rows},
     sort::LeafRows,
@@ -144,7 +144,7 @@ impl<R: Record> Scratch<R> {
         for (records, places) in records.chunks(RUN).zip(self.places.chunks_mut(RUN)) {
             coder.code(records, places);
             for (records, cells) in records.chunks(4).zip(places.chunks(4)) {
-                prefetch(records, AHEAD);
+                prefetch(records, STREAM_AHEAD);
                 cells.iter().for_each(|&cell| counts[cell as usize] += 1);
             }
         }

@@ -179,16 +179,16 @@ impl Grid {
             return Ok(Self { cells, layout, bricks: vec![], codes: vec![], colors });
         }
         let records = &*rows.records;
-        let mut place = match config.fit {
+        let mut placement = match config.fit {
             Fit::Robust => fit::inner(records),
             Fit::Whole => fit::whole(census::bounds(records)?),
         };
-        let mut survey = Survey::new(records, &place, config.resolution)?;
-        let overflow = fit::overflow(&place, &survey.census.bounds, survey.cells.width());
-        if overflow != place.overflow {
+        let mut survey = Survey::new(records, &placement, config.resolution)?;
+        let overflow = fit::overflow(&placement, &survey.census.bounds, survey.cells.width());
+        if overflow != placement.overflow {
             // Once is enough: cells are as wide as before.
-            place.overflow = overflow;
-            survey = Survey::new(records, &place, config.resolution)?;
+            placement.overflow = overflow;
+            survey = Survey::new(records, &placement, config.resolution)?;
         }
         let Survey { cells, layout, coder, census } = survey;
         let cells = cells.around(census.bounds);
@@ -264,10 +264,10 @@ struct Survey {
 impl Survey {
     fn new<R: Record>(
         records: &[R],
-        place: &cells::Layout,
+        placement: &cells::Placement,
         resolution: Resolution,
     ) -> Result<Self, Error> {
-        let cells = Cells::new(place, records.len(), resolution)?;
+        let cells = Cells::new(placement, records.len(), resolution)?;
         let layout = sort::layout::<R>(&cells, records.len());
         let coder = Coder::new(&cells, layout.block());
         let census = census::take(records, &coder)?;

@@ -33,7 +33,7 @@ use std::{iter, marker::PhantomData, ops::Range, ptr};
 const HANDS: u32 = 32;
 
 /// How many bytes ahead of the record at hand the next ones of its bucket are asked for.
-const AHEAD: usize = 64;
+const BUCKET_AHEAD: usize = 64;
 
 /// How many rows a stripe should have.
 const STRIPE_ROWS: usize = 1 << 19;
@@ -276,7 +276,7 @@ impl<'a, R: Record> Shared<'a, R> {
         #[cfg(target_arch = "x86_64")]
         {
             use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
-            let ahead = self.records.wrapping_add(at as usize).wrapping_byte_add(AHEAD);
+            let ahead = self.records.wrapping_add(at as usize).wrapping_byte_add(BUCKET_AHEAD);
             // SAFETY: a prefetch reads nothing, wherever it points.
             unsafe { _mm_prefetch::<_MM_HINT_T1>(ahead.cast()) };
         }
