@@ -124,10 +124,10 @@ pub(crate) fn plot(cases: &[Case], path: &Path) -> Result<()> {
     let shown = || Contender::value_variants().iter().copied().filter(|c| *c != Contender::Copy1);
     let all: Vec<(f64, f64)> =
         cases.iter().flat_map(|case| shown().filter_map(|c| point(case, c))).collect();
-    let range = |values: &dyn Fn(&(f64, f64)) -> f64| {
+    let range = |values: &dyn Fn(&(f64, f64)) -> f64, room: f64| {
         let low = all.iter().map(values).fold(f64::INFINITY, f64::min);
         let high = all.iter().map(values).fold(0.0, f64::max);
-        (low * 0.7..high * 1.5).log_scale()
+        (low * 0.7..high * room).log_scale()
     };
     anyhow::ensure!(!all.is_empty(), "there is nothing to plot");
     let mut chart = ChartBuilder::on(&area)
@@ -135,7 +135,7 @@ pub(crate) fn plot(cases: &[Case], path: &Path) -> Result<()> {
         .margin(12)
         .x_label_area_size(42)
         .y_label_area_size(64)
-        .build_cartesian_2d(range(&|point| point.0), range(&|point| point.1))?;
+        .build_cartesian_2d(range(&|point| point.0, 12.0), range(&|point| point.1, 1.5))?;
     chart
         .configure_mesh()
         .x_desc("records")
@@ -166,7 +166,7 @@ pub(crate) fn plot(cases: &[Case], path: &Path) -> Result<()> {
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
+        .position(SeriesLabelPosition::MiddleRight)
         .background_style(WHITE.mix(0.85))
         .border_style(BLACK.mix(0.2))
         .label_font(("sans-serif", 11))
