@@ -90,8 +90,8 @@ pub enum Order {
     /// Some order. It is the same for any number of threads.
     #[default]
     Any,
-    /// The order that they had before, or that their ids tell if they have ids. This needs up to
-    /// twice the time, and for records without ids 4 bytes each while sorting.
+    /// The order that they had before, or that their ids tell if they have ids. This takes two to
+    /// three times as long, and for records without ids 4 bytes each while sorting.
     Stable,
 }
 
