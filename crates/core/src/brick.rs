@@ -14,7 +14,8 @@ pub struct Brick {
     /// The largest radius among them.
     pub radius_max: f32,
     /// The sum of the volumes of balls of their radii, divided by the volume of the brick's cell,
-    /// each side of which counts as at least one diameter; 0 where that is no number.
+    /// each side of which counts as at least one diameter and as long as that of the box; 0 where
+    /// that is no number.
     pub density: f32,
 }
 

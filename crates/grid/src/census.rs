@@ -61,26 +61,25 @@ impl Extremes {
 
 /// Looks at all records: their box, and how many there are of each value of the coder's digit.
 pub(crate) fn take<R: Record>(records: &[R], coder: &Coder) -> Result<Census, Error> {
-    let (extremes, counts) = records
-        .par_chunks(chunk(records.len()))
-        .fold(
-            || (Extremes::NONE, vec![0; coder.digit().values()]),
-            |(mut extremes, mut counts), records| {
-                widest(Look { records, coder, extremes: &mut extremes, counts: &mut counts });
-                (extremes, counts)
-            },
-        )
-        .reduce(
-            || (Extremes::NONE, Vec::new()),
-            |a, b| (a.0.join(b.0), if a.1.is_empty() { b.1 } else { add(a.1, &b.1) }),
-        );
-    let bounds = check(records, extremes)?;
-    Ok(Census { bounds, counts })
+    let (extremes, counts) = look_at_all(records, coder);
+    Ok(Census { bounds: check(records, extremes)?, counts })
 }
 
 /// How many of these records, which are valid, there are of each value of the coder's digit.
 pub(crate) fn count<R: Record>(records: &[R], coder: &Coder) -> Vec<u32> {
-    take(records, coder).map(|census| census.counts).unwrap_or_default()
+    look_at_all(records, coder).1
+}
+
+fn look_at_all<R: Record>(records: &[R], coder: &Coder) -> (Extremes, Vec<u32>) {
+    let none = || (Extremes::NONE, vec![0; coder.digit().values()]);
+    records
+        .par_chunks(chunk(records.len()))
+        .fold(none, |(mut extremes, mut counts), records| {
+            widest(Look { records, coder, extremes: &mut extremes, counts: &mut counts });
+            (extremes, counts)
+        })
+        .reduce_with(|a, b| (a.0.join(b.0), add(a.1, &b.1)))
+        .unwrap_or_else(none)
 }
 
 /// The box around all records, each of which must be one that a grid can hold.

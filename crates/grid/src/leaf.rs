@@ -211,24 +211,27 @@ impl<R: Record> Scratch<R> {
 
     /// Sorts the rows of each brick by their ids.
     fn settle(&mut self, rows: &mut Rows<'_, R>) {
-        let mut rest = rows.reborrow();
-        for length in std::mem::take(&mut self.lengths) {
-            let mut members = rest.split_off_front(length as usize);
-            let Some(Lane::Words(ids)) = members.lanes.first() else { return };
+        let mut end = 0;
+        for index in 0..self.lengths.len() {
+            let members = end..end + self.lengths[index] as usize;
+            end = members.end;
+            let Some(Lane::Words(ids)) = rows.lanes.first() else { return };
+            let ids = ids[members.clone()].iter().map(|&id| u32::from_ne_bytes(id));
             self.pairs.clear();
-            let ids = ids.iter().map(|&id| u32::from_ne_bytes(id));
             self.pairs.extend((0..).zip(ids).map(|(row, id)| pair(id, row)));
+            if self.pairs.is_sorted() {
+                continue;
+            }
             self.pairs.sort_unstable();
             self.places.resize(members.len(), 0);
             for (place, &pair) in (0_u32..).zip(&self.pairs) {
                 self.places[unpair(pair).1 as usize] = place;
             }
+            let records = &mut rows.records[members.clone()];
             self.records.clear();
-            let sorted = self.pairs.iter().map(|&pair| members.records[unpair(pair).1 as usize]);
-            self.records.extend(sorted);
-            members.records.copy_from_slice(&self.records);
-            members.lanes.iter_mut().for_each(|lane| self.sort_lane(lane));
-            self.lengths.push(length);
+            self.records.extend(self.pairs.iter().map(|&pair| records[unpair(pair).1 as usize]));
+            records.copy_from_slice(&self.records);
+            rows.lanes.iter_mut().for_each(|lane| self.sort_lane(&mut lane.part(members.clone())));
         }
     }
 }

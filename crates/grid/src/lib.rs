@@ -219,7 +219,7 @@ impl Grid {
     }
 
     /// The mean color of the records of each brick, if the scene has colors: the mean of the stored
-    /// values of each channel.
+    /// values of each channel. The grid of a brick file has none.
     #[must_use]
     pub fn colors(&self) -> Option<&[[u8; 4]]> {
         self.colors.as_deref()

@@ -2,7 +2,7 @@
 
 use bytemuck::cast_slice_mut;
 use puncta_core::{Attributes, Record, Scene};
-use std::mem;
+use std::{mem, ops::Range};
 
 /// Records and their columns; all are equally long.
 #[derive(Debug)]
@@ -78,6 +78,14 @@ impl<'a> Lane<'a> {
         match self {
             Self::Words(words) => words.len(),
             Self::Bytes(bytes) => bytes.len(),
+        }
+    }
+
+    /// The values of some rows.
+    pub(crate) fn part(&mut self, rows: Range<usize>) -> Lane<'_> {
+        match self {
+            Self::Words(words) => Lane::Words(&mut words[rows]),
+            Self::Bytes(bytes) => Lane::Bytes(&mut bytes[rows]),
         }
     }
 

@@ -50,9 +50,11 @@ pub(crate) struct LeafRows {
 
 impl LeafRows {
     pub(crate) fn new<R>(cells: &Cells, records: usize) -> Self {
+        // What stays in a cache of 2 MiB beside the rows themselves, and what still nearly does.
+        let (best, most) = (3 << 19, 5 << 19);
         let bytes = cells.count().min(records).saturating_mul(32).saturating_add(96 << 10);
         let rows = |bytes: usize| (bytes / (size_of::<R>() + SCRATCH_BYTES)).max(64);
-        Self { best: rows(bytes.min(3 << 19)), most: rows(bytes.min(5 << 19)) }
+        Self { best: rows(bytes.min(best)), most: rows(bytes.min(most)) }
     }
 }
 
@@ -69,7 +71,7 @@ pub(crate) fn layout<R>(cells: &Cells, records: usize) -> Layout {
 /// With how many bits to partition this many rows whose codes differ in `bits` bits.
 fn split_bits(rows: usize, leaf: LeafRows, bits: u32) -> u32 {
     // A bucket of the mean number of rows is well below the limit, as some have more.
-    let buckets = (rows / (leaf.best * 3 / 4)).max(1).next_power_of_two().ilog2();
+    let buckets = rows.div_ceil(leaf.best * 3 / 4).max(1).next_power_of_two().ilog2();
     // A bucket whose cells are too many for its counts is no good either.
     let least = bits.saturating_sub(14);
     buckets.max(least).min(BUCKETS_MAX).min(bits)
