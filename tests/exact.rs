@@ -266,7 +266,7 @@ fn records_without_a_picture_do_no_harm() {
 
 #[test]
 fn a_renderer_survives_records_that_no_grid_takes() {
-    use puncta::{Batch, Brick, Renderer, Visible, core::Aabb, core::VisibleBrick};
+    use puncta::{Brick, Content, Renderer, Visible, core::Aabb};
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0];
     let mut records = vec![Sphere::new([0.0; 3], 0.5)];
     for value in bad {
@@ -285,13 +285,14 @@ fn a_renderer_survives_records_that_no_grid_takes() {
         let visible = Visible::all(&bricks, scene.origin, &view);
         let mut renderer = CpuRenderer::default();
         Renderer::<Sphere>::begin(&mut renderer, &view).unwrap();
-        renderer.draw(&Batch { scene: &scene, bricks: &bricks, visible: &visible.bricks }).unwrap();
-        let wrong = [VisibleBrick { index: 7, near: 0.0, far: 1.0 }];
-        let batch = Batch { scene: &scene, bricks: &bricks, visible: &wrong };
-        assert!(renderer.draw(&batch).is_err(), "a brick that is not there");
+        let content = Content { scene: &scene, bricks: &bricks, blocks: &[] };
+        renderer.draw(&content, &visible.bricks).unwrap();
+        let more = vec![brick.clone(); 8];
+        let wrong = &Visible::all(&more, scene.origin, &view).bricks[7..];
+        assert!(renderer.draw(&content, wrong).is_err(), "a brick that is not there");
         let inverted = [Brick { records: count..count + 1, ..brick.clone() }];
-        let batch = Batch { scene: &scene, bricks: &inverted, visible: &visible.bricks };
-        assert!(renderer.draw(&batch).is_err(), "records that are not there");
+        let content = Content { bricks: &inverted, ..content };
+        assert!(renderer.draw(&content, &visible.bricks).is_err(), "records that are not there");
         let picture = Renderer::<Sphere>::finish(&mut renderer).unwrap();
         // Records 0 and, at depths -1 and at x = -1, those of the last round can be seen.
         assert!(picture.visible_records().iter().all(|&id| id == 0 || id >= 10));

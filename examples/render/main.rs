@@ -79,17 +79,18 @@ fn draw(
 ) -> Result<Picture> {
     let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
     let budget = (scene.records.len() as u64 / 100).max(1 << 18);
-    let picture = statistics.time(step, || {
+    let (picture, progress) = statistics.time(step, || {
         let mut steps = pipeline.progressive(scene, grid, view, budget)?;
-        let bar = progress::Bar::counting("drawing", steps.step().left.records);
+        let all = steps.progress().left.records;
+        let bar = progress::Bar::counting("drawing", all);
         for step in &mut steps {
-            bar.set(step?.drawn.records);
+            bar.set(all - step?.left.records);
         }
         bar.finish();
-        anyhow::Ok(steps.finish()?)
+        anyhow::Ok((steps.picture()?, steps.progress()))
     })?;
     if step == "frame" {
-        statistics.drawn = pipeline.renderer().drawn();
+        statistics.drawn = progress.drawn;
     }
     Ok(picture)
 }

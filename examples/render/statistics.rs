@@ -2,7 +2,7 @@
 
 use crate::{input::Input, options::Options};
 use anyhow::{Context, Result};
-use puncta::{Grid, Picture, View, core::Progress};
+use puncta::{Amount, Grid, Picture, View};
 use serde_json::{Map, Value, json};
 use std::{fmt, fs, time::Instant};
 
@@ -10,7 +10,7 @@ use std::{fmt, fs, time::Instant};
 #[derive(Debug, Default)]
 pub(crate) struct Statistics {
     /// The bricks and records that were drawn for the first picture.
-    pub(crate) drawn: Progress,
+    pub(crate) drawn: Amount,
     seconds: Vec<(&'static str, f64)>,
     values: Map<String, Value>,
 }

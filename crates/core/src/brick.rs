@@ -1,4 +1,10 @@
-//! Bricks, and the working list of a frame.
+/*!
+Bricks, and the working list of a frame.
+
+A brick in play carries bounds of its view depths in `f32`, rounded outwards. Stages reorder and drop
+bricks but cannot make any, so a renderer can trust what it reads there: to skip what is hidden it
+must know in front of which depth a brick has no surface.
+*/
 
 use crate::{Aabb, Bounds, View};
 use glam::DVec3;
@@ -27,6 +33,69 @@ impl Brick {
     }
 }
 
+/// A run of neighboring bricks, which are looked at together first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// The bricks, as indices.
+    pub bricks: Range<u32>,
+    /// The smallest box around the positions of all their records.
+    pub bounds: Aabb,
+    /// The largest radius among them.
+    pub radius_max: f32,
+}
+
+impl Block {
+    /// How many bricks [`Block::of_runs`] takes together.
+    pub const RUN: usize = 64;
+
+    /// Blocks of runs of bricks; good if bricks that are near in their order are near in space.
+    #[must_use]
+    pub fn of_runs(bricks: &[Brick]) -> Vec<Self> {
+        let block = |(start, run): (usize, &[Brick])| {
+            let first = u32::try_from(start * Self::RUN).unwrap_or(u32::MAX);
+            let empty = Self { bricks: first..first, bounds: Aabb::EMPTY, radius_max: 0.0 };
+            run.iter().fold(empty, |mut block, brick| {
+                block.bricks.end = block.bricks.end.saturating_add(1);
+                block.bounds.add(brick.bounds.min);
+                block.bounds.add(brick.bounds.max);
+                block.radius_max = block.radius_max.max(brick.radius_max);
+                block
+            })
+        };
+        bricks.chunks(Self::RUN).enumerate().map(block).collect()
+    }
+}
+
+/// What holds bricks: a grid, a list, or a spatial structure of the user's own.
+pub trait Bricks {
+    /// All bricks.
+    fn bricks(&self) -> &[Brick];
+
+    /// Blocks of bricks, ascending and without overlap. Each must hold what its bricks hold; bricks
+    /// that are in no block are looked at one by one.
+    fn blocks(&self) -> &[Block] {
+        &[]
+    }
+}
+
+impl Bricks for [Brick] {
+    fn bricks(&self) -> &[Brick] {
+        self
+    }
+}
+
+impl<const N: usize> Bricks for [Brick; N] {
+    fn bricks(&self) -> &[Brick] {
+        self
+    }
+}
+
+impl Bricks for Vec<Brick> {
+    fn bricks(&self) -> &[Brick] {
+        self
+    }
+}
+
 /// The bricks still in play for a frame, in the order in which they are to be drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Visible {
@@ -37,29 +106,87 @@ pub struct Visible {
 /// A brick in play.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibleBrick {
+    index: u32,
+    near: f32,
+    far: f32,
+    open: u32,
+}
+
+impl VisibleBrick {
     /// Which brick.
-    pub index: u32,
+    #[must_use]
+    #[inline]
+    pub const fn index(&self) -> u32 {
+        self.index
+    }
+
     /// A view depth in front of which the brick has no surface.
-    pub near: f64,
+    #[must_use]
+    #[inline]
+    pub const fn near(&self) -> f32 {
+        self.near
+    }
+
     /// A view depth behind which the brick has no surface.
-    pub far: f64,
+    #[must_use]
+    #[inline]
+    pub const fn far(&self) -> f32 {
+        self.far
+    }
+
+    /// How many pixels it can still change, at most; [`u32::MAX`] while nobody has looked.
+    #[must_use]
+    #[inline]
+    pub const fn open(&self) -> u32 {
+        self.open
+    }
+
+    /// Notes how many pixels it can still change, at most.
+    pub const fn set_open(&mut self, pixels: u32) {
+        self.open = pixels;
+    }
 }
 
 impl Visible {
     /// All bricks, with bounds of their view depths.
     #[must_use]
     pub fn all(bricks: &[Brick], origin: DVec3, view: &View) -> Self {
+        let mut visible = Self::default();
+        visible.refill(bricks, origin, view);
+        visible
+    }
+
+    /// Makes this the list of [`Visible::all`], in the memory that it has.
+    pub fn refill(&mut self, bricks: &[Brick], origin: DVec3, view: &View) {
         let to_origin = origin - view.eye();
-        let bricks = (0_u32..).zip(bricks).map(|(index, brick)| {
+        let distance = to_origin.length();
+        let (forward, reaching) = (view.forward(), view.forward().abs());
+        let place = |(index, brick): (u32, &Brick)| {
             let (min, max) = (brick.bounds.min.as_dvec3(), brick.bounds.max.as_dvec3());
             let half = (max - min) * 0.5;
-            let middle = view.forward().dot(to_origin + (min + half));
-            let reach = view.forward().abs().dot(half) + f64::from(brick.radius_max);
+            let middle = forward.dot(to_origin + (min + half));
+            let reach = reaching.dot(half) + f64::from(brick.radius_max);
             // Twice the rounding of the terms above, so that the bounds hold.
-            let slack = 8.0 * f64::EPSILON * (to_origin.length() + middle.abs() + reach);
-            VisibleBrick { index, near: middle - reach - slack, far: middle + reach + slack }
-        });
-        Self { bricks: bricks.collect() }
+            let slack = 8.0 * f64::EPSILON * (distance + middle.abs() + reach);
+            let (near, far) = (middle - reach - slack, middle + reach + slack);
+            VisibleBrick { index, near: below(near), far: -below(-far), open: u32::MAX }
+        };
+        self.bricks.clear();
+        self.bricks.extend((0_u32..).zip(bricks).map(place));
+    }
+}
+
+/// The largest `f32` that is not above a number; that below all numbers for NaN.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "rounding is what is meant")]
+fn below(x: f64) -> f32 {
+    let rounded = x as f32;
+    if f64::from(rounded) <= x {
+        rounded
+    } else if x.is_nan() {
+        f32::NEG_INFINITY
+    } else {
+        rounded.next_down()
     }
 }
 
@@ -76,10 +203,38 @@ mod tests {
         let eye = origin + DVec3::new(5.0, 4.0, -8.0);
         let view = View::look_at(eye, origin, DVec3::Y).unwrap();
         let visible = Visible::all(std::slice::from_ref(&brick), origin, &view).bricks[0];
+        let (near, far) = (f64::from(visible.near()), f64::from(visible.far()));
         for corner in bounds.to_world(origin, 0.0).corners() {
             let depth = view.to_camera(corner - eye).z;
-            assert!(visible.near <= depth - 0.25 && depth + 0.25 <= visible.far);
+            assert!(near <= depth - 0.25 && depth + 0.25 <= far);
         }
-        assert!(visible.far - visible.near < 2.0 * (bounds.max - bounds.min).length() as f64);
+        assert!(far - near < 2.0 * (bounds.max - bounds.min).length() as f64);
+    }
+
+    #[test]
+    fn depth_bounds_are_rounded_outwards() {
+        for x in [0.1, -0.1, 1e300, -1e300, 1e-300, -1e-300, f64::INFINITY, 1.0, 0.0] {
+            assert!(f64::from(below(x)) <= x && f64::from(below(x).next_up()) > x || x > 1e299);
+            assert!(f64::from(below(x)) <= x, "{x}");
+        }
+        assert_eq!(below(1e300), f32::MAX);
+        assert_eq!(below(f64::NAN), f32::NEG_INFINITY);
+    }
+
+    #[test]
+    fn blocks_hold_their_bricks() {
+        let brick = |i: u8| {
+            let at = Vec3::splat(f32::from(i));
+            let bounds = Aabb { min: at, max: at + 1.0 };
+            Brick { records: 0..0, bounds, radius_max: f32::from(i % 7), density: 0.0 }
+        };
+        let bricks: Vec<Brick> = (0..150).map(brick).collect();
+        let blocks = Block::of_runs(&bricks);
+        assert_eq!(
+            blocks.iter().map(|b| b.bricks.clone()).collect::<Vec<_>>(),
+            [0..64, 64..128, 128..150]
+        );
+        assert_eq!(blocks[1].bounds, Aabb { min: Vec3::splat(64.0), max: Vec3::splat(128.0) });
+        assert_eq!(blocks[1].radius_max, 6.0);
     }
 }

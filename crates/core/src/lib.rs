@@ -41,21 +41,25 @@ mod picture;
 mod pipeline;
 mod range;
 mod record;
+mod renderer;
 mod scene;
 mod source;
+mod stage;
 mod view;
 
 pub use crate::{
     bounds::{Aabb, Bounds},
-    brick::{Brick, Visible, VisibleBrick},
+    brick::{Block, Brick, Bricks, Visible, VisibleBrick},
     column::Column,
     error::Error,
     image::Image,
     picture::{NO_RECORD, Picture},
-    pipeline::{Batch, Frame, Pipeline, Progress, Progressive, Renderer, Stage, Step},
+    pipeline::{Budget, Pipeline, Progressive},
     range::{RangeBins, inner_range},
     record::{Record, Sphere},
+    renderer::{Amount, Content, Progress, Renderer},
     scene::{Attributes, MAX_RECORDS, Scalar, Scene},
     source::{SliceSource, Source},
+    stage::{Frame, Stage},
     view::{MAX_SIDE, Projection, View},
 };

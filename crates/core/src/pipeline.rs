@@ -1,235 +1,44 @@
 /*!
 The pipeline: stages narrow and order the bricks of a frame, a renderer draws them.
 
-[`Pipeline::render`] draws to the end. [`Pipeline::progressive`] draws batch by batch and tells
-after each one what is left, so that a program can show what it has or give up for a newer view.
+[`Pipeline::render`] draws to the end. [`Pipeline::progressive`] draws bit by bit and tells after each
+step what is left and how many pixels that could still change, so that a program can show what it has,
+stop when nothing can change any more, or turn to a newer view ([`Progressive::look`]).
+
+A step draws for a [`Budget`]. Then the renderer is asked what each brick that is left could still
+change: those that can change nothing are skipped, and the stages may order the rest anew. The first
+step of a picture draws the records that were seen in the picture before, if there was one. It needs
+neither a stage nor a brick to be looked at, and after a small move of the camera it shows nearly the
+whole picture.
 */
 
-use crate::{Brick, Error, Picture, Record, Scene, View, Visible, VisibleBrick};
-use glam::DVec3;
+use crate::{
+    Amount, Bricks, Content, Frame, Picture, Progress, Record, Renderer, Scene, Stage, View,
+    Visible, VisibleBrick,
+};
 use std::{
     fmt,
-    ops::{AddAssign, Range},
+    time::{Duration, Instant},
 };
 
-/// What a stage sees of a frame.
-#[derive(Debug)]
-pub struct Frame<'a, G: ?Sized> {
-    /// The view to draw.
-    pub view: &'a View,
-    /// The world position that the boxes of the bricks are relative to.
-    pub origin: DVec3,
-    /// The spatial structure: a grid, or whatever else holds bricks.
-    pub bricks: &'a G,
+/// How much is drawn before [`Progressive`] comes back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Budget {
+    /// Bricks that hold at least this many records.
+    Records(u64),
+    /// About as much as can be drawn in this time, at least one brick.
+    Time(Duration),
 }
 
-impl<G: ?Sized> Clone for Frame<'_, G> {
-    fn clone(&self) -> Self {
-        *self
+impl From<u64> for Budget {
+    fn from(records: u64) -> Self {
+        Self::Records(records)
     }
 }
 
-impl<G: ?Sized> Copy for Frame<'_, G> {}
-
-/// Narrows or orders the bricks in play.
-///
-/// A stage must never drop a brick that can be seen. Tuples of stages are stages and run from left
-/// to right; so are closures.
-///
-/// # Examples
-///
-/// A user's own stage leaves out bricks of another floor of the building:
-///
-/// ```
-/// use puncta_core::{Brick, Frame, Stage, Visible};
-///
-/// struct Floor {
-///     top: f32,
-/// }
-///
-/// impl<G: AsRef<[Brick]>> Stage<G> for Floor {
-///     fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
-///         let bricks = frame.bricks.as_ref();
-///         visible.bricks.retain(|brick| bricks[brick.index as usize].bounds.min.z < self.top);
-///     }
-/// }
-/// ```
-pub trait Stage<G: ?Sized> {
-    /// Changes `visible`, which holds indices of the bricks in `frame`.
-    fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible);
-}
-
-impl<G: ?Sized, F: FnMut(&Frame<'_, G>, &mut Visible)> Stage<G> for F {
-    fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
-        self(frame, visible);
-    }
-}
-
-impl<G: ?Sized> Stage<G> for () {
-    fn apply(&mut self, _frame: &Frame<'_, G>, _visible: &mut Visible) {}
-}
-
-impl<G: ?Sized, A: Stage<G>, B: Stage<G>> Stage<G> for (A, B) {
-    fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
-        self.0.apply(frame, visible);
-        self.1.apply(frame, visible);
-    }
-}
-
-impl<G: ?Sized, A: Stage<G>, B: Stage<G>, C: Stage<G>> Stage<G> for (A, B, C) {
-    fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
-        self.0.apply(frame, visible);
-        self.1.apply(frame, visible);
-        self.2.apply(frame, visible);
-    }
-}
-
-/// Bricks to draw, nearest first as far as the stages know.
-#[derive(Debug)]
-pub struct Batch<'a, R> {
-    /// The scene that the bricks are made of.
-    pub scene: &'a Scene<R>,
-    /// All bricks of the scene.
-    pub bricks: &'a [Brick],
-    /// Those to draw: indices into `bricks`.
-    pub visible: &'a [VisibleBrick],
-}
-
-impl<R: Record> Batch<'_, R> {
-    /// Checks that the scene is valid, that its bricks are made of records that are there, and that
-    /// those to draw are among the bricks. Renderers that index do this first.
-    ///
-    /// # Errors
-    ///
-    /// As [`Scene::validate`], [`Error::BrickRange`] or [`Error::UnknownBrick`].
-    pub fn validate(&self) -> Result<(), Error> {
-        self.scene.validate()?;
-        let records = self.scene.records.len();
-        for &VisibleBrick { index, .. } in self.visible {
-            let bricks = self.bricks.len();
-            let brick =
-                self.bricks.get(index as usize).ok_or(Error::UnknownBrick { index, bricks })?;
-            let Range { start, end } = brick.records;
-            if start > end || end as usize > records {
-                return Err(Error::BrickRange { brick: index as usize, start, end, records });
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Draws bricks into a picture.
-///
-/// Drawing is order independent: whatever the order of the batches, the picture shows the nearest
-/// surface, and the lower [`Scene::id`] where two are equally near.
-///
-/// # Examples
-///
-/// A renderer that draws nothing but counts what it would have to draw:
-///
-/// ```
-/// use puncta_core::{Batch, Error, Picture, Progress, Record, Renderer, View};
-///
-/// #[derive(Default)]
-/// struct Count {
-///     size: (u32, u32),
-///     progress: Progress,
-/// }
-///
-/// impl<R: Record> Renderer<R> for Count {
-///     type Error = Error;
-///
-///     fn begin(&mut self, view: &View) -> Result<(), Error> {
-///         *self = Self { size: (view.width(), view.height()), progress: Progress::default() };
-///         Ok(())
-///     }
-///
-///     fn draw(&mut self, batch: &Batch<'_, R>) -> Result<(), Error> {
-///         self.progress += Progress::of(batch.bricks, batch.visible);
-///         Ok(())
-///     }
-///
-///     fn finish(&mut self) -> Result<Picture, Error> {
-///         Picture::new(self.size.0, self.size.1)
-///     }
-///
-///     fn progress(&self) -> Progress {
-///         self.progress
-///     }
-/// }
-/// ```
-pub trait Renderer<R: Record> {
-    /// What can go wrong.
-    type Error: From<Error>;
-
-    /// Starts a new picture, whatever became of the one before.
-    ///
-    /// # Errors
-    ///
-    /// When there cannot be such a picture.
-    fn begin(&mut self, view: &View) -> Result<(), Self::Error>;
-
-    /// Draws bricks into the picture.
-    ///
-    /// # Errors
-    ///
-    /// When the device fails.
-    fn draw(&mut self, batch: &Batch<'_, R>) -> Result<(), Self::Error>;
-
-    /// The picture of all that was drawn since [`Renderer::begin`].
-    ///
-    /// # Errors
-    ///
-    /// When the device fails, or no picture was begun.
-    fn finish(&mut self) -> Result<Picture, Self::Error>;
-
-    /// What was drawn since [`Renderer::begin`].
-    fn progress(&self) -> Progress;
-}
-
-/// An amount of bricks and of their records.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Progress {
-    /// A number of bricks.
-    pub bricks: u64,
-    /// The number of records in them.
-    pub records: u64,
-}
-
-impl Progress {
-    /// The amount of the bricks in play; those that are not among `bricks` hold nothing.
-    #[must_use]
-    pub fn of(bricks: &[Brick], visible: &[VisibleBrick]) -> Self {
-        let records = |brick: &VisibleBrick| {
-            bricks.get(brick.index as usize).map_or(0, |brick| brick.records.len() as u64)
-        };
-        Self { bricks: visible.len() as u64, records: visible.iter().map(records).sum() }
-    }
-}
-
-impl AddAssign for Progress {
-    fn add_assign(&mut self, other: Self) {
-        self.bricks += other.bricks;
-        self.records += other.records;
-    }
-}
-
-/// Where a picture stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Step {
-    /// What was drawn.
-    pub drawn: Progress,
-    /// What is still to be drawn.
-    pub left: Progress,
-    /// What the stages dropped.
-    pub culled: Progress,
-}
-
-impl Step {
-    /// Whether nothing that is left can change any pixel.
-    #[must_use]
-    pub const fn settled(&self) -> bool {
-        self.left.bricks == 0
+impl From<Duration> for Budget {
+    fn from(time: Duration) -> Self {
+        Self::Time(time)
     }
 }
 
@@ -239,33 +48,34 @@ impl Step {
 ///
 /// ```
 /// use puncta_core::{Brick, Frame, Pipeline, Visible};
-/// # use puncta_core::{Batch, Error, Picture, Progress, Record, Renderer, Scene, Sphere, View};
+/// # use puncta_core::{Amount, Content, Error, Picture, Record, Renderer, Scene, Sphere, View, VisibleBrick};
 /// # #[derive(Default)]
-/// # struct Count(Progress);
+/// # struct Count;
 /// # impl<R: Record> Renderer<R> for Count {
 /// #     type Error = Error;
 /// #     fn begin(&mut self, _: &View) -> Result<(), Error> { Ok(()) }
-/// #     fn draw(&mut self, batch: &Batch<'_, R>) -> Result<(), Error> {
-/// #         self.0 += Progress::of(batch.bricks, batch.visible);
-/// #         Ok(())
+/// #     fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
+/// #         Ok(Amount::of(content.bricks, bricks))
 /// #     }
 /// #     fn finish(&mut self) -> Result<Picture, Error> { Picture::new(1, 1) }
-/// #     fn progress(&self) -> Progress { self.0 }
 /// # }
 /// # let scene = Scene::new(vec![Sphere::new([0.0; 3], 1.0)]);
 /// # let bounds = puncta_core::Aabb { min: glam::Vec3::ZERO, max: glam::Vec3::ZERO };
 /// # let bricks = vec![Brick { records: 0..1, bounds, radius_max: 1.0, density: 1.0 }];
-/// # let renderer = Count::default();
+/// # let renderer = Count;
 /// # let view = View::look_at(glam::DVec3::Z, glam::DVec3::ZERO, glam::DVec3::Y)?;
+/// # let next_view = view.clone();
 /// let nearest_first = |_: &Frame<'_, Vec<Brick>>, visible: &mut Visible| {
-///     visible.bricks.sort_by(|a, b| a.near.total_cmp(&b.near));
+///     visible.bricks.sort_by(|a, b| a.near().total_cmp(&b.near()));
 /// };
 /// let mut pipeline = Pipeline::new(nearest_first, renderer);
 /// let mut steps = pipeline.progressive(&scene, &bricks, &view, 100_000)?;
-/// for step in &mut steps {
-///     println!("{} records to go", step?.left.records);
+/// while let Some(progress) = steps.next() {
+///     println!("{} pixels may still change", progress?.open);
+///     let picture = steps.picture()?;
 /// }
-/// let picture = steps.finish()?;
+/// steps.look(&next_view)?;
+/// assert!(!steps.progress().settled());
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Clone, Debug, Default)]
@@ -273,12 +83,14 @@ pub struct Pipeline<S, D> {
     stages: S,
     renderer: D,
     visible: Visible,
+    /// Records drawn in a second, as far as that is known.
+    speed: Option<f64>,
 }
 
 impl<S, D> Pipeline<S, D> {
     /// A pipeline that applies `stages` and lets `renderer` draw what they leave.
     pub fn new(stages: S, renderer: D) -> Self {
-        Self { stages, renderer, visible: Visible::default() }
+        Self { stages, renderer, visible: Visible::default(), speed: None }
     }
 
     /// Draws everything that can be seen.
@@ -294,7 +106,7 @@ impl<S, D> Pipeline<S, D> {
     ) -> Result<Picture, D::Error>
     where
         R: Record,
-        G: AsRef<[Brick]>,
+        G: Bricks,
         S: Stage<G>,
         D: Renderer<R>,
     {
@@ -302,13 +114,12 @@ impl<S, D> Pipeline<S, D> {
         for step in &mut steps {
             step?;
         }
-        steps.finish()
+        steps.picture()
     }
 
-    /// Starts a picture and returns an iterator that draws, at each step, the next bricks in order
-    /// until they hold at least `budget` records.
+    /// Starts a picture and returns an iterator that draws a bit more of it at each step.
     ///
-    /// [`Progressive::finish`] gives the picture of what was drawn until then.
+    /// [`Progressive::picture`] gives the picture of what was drawn until then.
     ///
     /// # Errors
     ///
@@ -318,33 +129,34 @@ impl<S, D> Pipeline<S, D> {
         scene: &'a Scene<R>,
         bricks: &'a G,
         view: &View,
-        budget: u64,
-    ) -> Result<Progressive<'a, R, D>, D::Error>
+        budget: impl Into<Budget>,
+    ) -> Result<Progressive<'a, R, G, S, D>, D::Error>
     where
         R: Record,
-        G: AsRef<[Brick]>,
+        G: Bricks,
         S: Stage<G>,
         D: Renderer<R>,
     {
-        let list = bricks.as_ref();
-        self.visible = Visible::all(list, scene.origin, view);
-        Batch { scene, bricks: list, visible: &self.visible.bricks }.validate()?;
-        let all = Progress::of(list, &self.visible.bricks);
-        self.stages.apply(&Frame { view, origin: scene.origin, bricks }, &mut self.visible);
-        let known = |brick: &VisibleBrick| (brick.index as usize) < list.len();
-        self.visible.bricks.retain(known);
-        let left = Progress::of(list, &self.visible.bricks);
-        self.renderer.begin(view)?;
-        let culled = Progress {
-            bricks: all.bricks.saturating_sub(left.bricks),
-            records: all.records.saturating_sub(left.records),
+        let mut progressive = Progressive {
+            pipeline: self,
+            scene,
+            bricks,
+            view: view.clone(),
+            budget: budget.into(),
+            next: 0,
+            is_new: true,
+            progress: Progress::default(),
         };
-        Ok(Progressive {
-            renderer: &mut self.renderer,
-            batch: Batch { scene, bricks: list, visible: &self.visible.bricks },
-            step: Step { drawn: Progress::default(), left, culled },
-            budget,
-        })
+        progressive.look(view)?;
+        Ok(progressive)
+    }
+
+    /// Forgets what was seen: the next picture starts from nothing.
+    pub fn forget<R: Record>(&mut self)
+    where
+        D: Renderer<R>,
+    {
+        self.renderer.forget();
     }
 
     /// The renderer.
@@ -354,62 +166,202 @@ impl<S, D> Pipeline<S, D> {
 }
 
 /// A picture that is being drawn, step by step.
-pub struct Progressive<'a, R, D> {
-    renderer: &'a mut D,
-    /// What is left to draw.
-    batch: Batch<'a, R>,
-    step: Step,
-    budget: u64,
+pub struct Progressive<'a, R, G, S, D> {
+    pipeline: &'a mut Pipeline<S, D>,
+    scene: &'a Scene<R>,
+    bricks: &'a G,
+    view: View,
+    budget: Budget,
+    /// Which of the bricks in play comes next.
+    next: usize,
+    /// Whether nothing of this picture has been drawn.
+    is_new: bool,
+    progress: Progress,
 }
 
-impl<R, D> Progressive<'_, R, D> {
+impl<R, G, S, D> Progressive<'_, R, G, S, D> {
     /// Where the picture stands.
     #[must_use]
-    pub const fn step(&self) -> Step {
-        self.step
+    pub const fn progress(&self) -> Progress {
+        self.progress
+    }
+
+    /// The view that is being drawn.
+    #[must_use]
+    pub const fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// The bricks that are left, in the order in which they are to be drawn.
+    #[must_use]
+    pub fn left(&self) -> &[VisibleBrick] {
+        self.pipeline.visible.bricks.get(self.next..).unwrap_or_default()
     }
 }
 
-impl<R: Record, D: Renderer<R>> Progressive<'_, R, D> {
+impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S, D> {
+    /// Turns to another view. What is left of the view before is not drawn any more.
+    ///
+    /// # Errors
+    ///
+    /// When the scene or its bricks are not valid, and what the renderer has to report. Nothing is
+    /// left to draw then.
+    pub fn look(&mut self, view: &View) -> Result<(), D::Error> {
+        self.view = view.clone();
+        self.progress = Progress::default();
+        let (list, origin) = (self.bricks.bricks(), self.scene.origin);
+        let Pipeline { stages, renderer, visible, .. } = &mut *self.pipeline;
+        visible.refill(list, origin, view);
+        let all = Amount::of(list, &visible.bricks);
+        let content = Content { scene: self.scene, bricks: list, blocks: self.bricks.blocks() };
+        let begun = content.validate(&visible.bricks).map_err(D::Error::from);
+        if let Err(error) = begun.and_then(|()| renderer.begin(view)) {
+            visible.bricks.clear();
+            return Err(error);
+        }
+        stages.apply(&Frame { view, origin, bricks: self.bricks }, visible);
+        // Stages cannot make bricks, but may have swapped in a list of others.
+        visible.bricks.retain(|brick| (brick.index() as usize) < list.len());
+        let left = Amount::of(list, &visible.bricks);
+        self.progress = Progress { left, culled: all - left, ..Progress::default() };
+        self.progress.open = if visible.bricks.is_empty() { 0 } else { self.pixels() };
+        (self.next, self.is_new) = (0, true);
+        Ok(())
+    }
+
     /// The picture of what was drawn so far.
     ///
     /// # Errors
     ///
     /// What the renderer has to report.
-    pub fn finish(self) -> Result<Picture, D::Error> {
-        self.renderer.finish()
+    pub fn picture(&mut self) -> Result<Picture, D::Error> {
+        self.pipeline.renderer.finish()
+    }
+
+    /// Draws what was seen before; whether there was anything.
+    fn recall(&mut self) -> Result<bool, D::Error> {
+        let Pipeline { renderer, visible, .. } = &mut *self.pipeline;
+        let content = content(self.scene, self.bricks);
+        self.progress.recalled = renderer.recall(&content, &visible.bricks)?;
+        Ok(self.progress.recalled > 0)
+    }
+
+    /// Draws until the budget is spent.
+    fn draw(&mut self) -> Result<(), D::Error> {
+        match self.budget {
+            Budget::Records(records) => self.draw_records(records),
+            Budget::Time(time) => {
+                let start = Instant::now();
+                while self.next < self.pipeline.visible.bricks.len() {
+                    let rest = time.saturating_sub(start.elapsed());
+                    // Half of what the rest of the time seems good for, as speeds vary.
+                    let speed = self.pipeline.speed.unwrap_or(1e6);
+                    #[expect(
+                        clippy::cast_possible_truncation,
+                        clippy::cast_sign_loss,
+                        reason = "it saturates"
+                    )]
+                    let records = (rest.as_secs_f64() * 0.5 * speed) as u64;
+                    let (from, drawn) = (Instant::now(), self.progress.drawn.records);
+                    self.draw_records(records.max(SMALLEST))?;
+                    let drawn = (self.progress.drawn.records - drawn) as f64;
+                    let took = from.elapsed().as_secs_f64();
+                    if drawn > 0.0 && took > 0.0 {
+                        self.pipeline.speed = Some(drawn / took);
+                    }
+                    if start.elapsed() >= time {
+                        break;
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Draws the next bricks, which hold at least this many records.
+    fn draw_records(&mut self, records: u64) -> Result<(), D::Error> {
+        let content = content(self.scene, self.bricks);
+        let left = self.pipeline.visible.bricks.get(self.next..).unwrap_or_default();
+        let mut sum = 0;
+        let enough = left.iter().position(|brick| {
+            sum += content.bricks[brick.index() as usize].records.len() as u64;
+            sum >= records
+        });
+        let now = &left[..enough.map_or(left.len(), |last| last + 1)];
+        let taken = Amount { bricks: now.len() as u64, records: sum };
+        let drawn = self.pipeline.renderer.draw(&content, now)?;
+        self.next += now.len();
+        self.progress.drawn += drawn;
+        self.progress.skipped += taken - drawn;
+        self.progress.left = self.progress.left - taken;
+        Ok(())
+    }
+
+    /// Finds what the bricks that are left could change, and leaves out those that cannot.
+    fn survey(&mut self) -> Result<(), D::Error> {
+        let pixels = self.pixels();
+        let content = content(self.scene, self.bricks);
+        let Pipeline { stages, renderer, visible, .. } = &mut *self.pipeline;
+        visible.bricks.drain(..self.next);
+        self.next = 0;
+        let open = match visible.bricks.as_mut_slice() {
+            [] => Some(0),
+            left => renderer.survey(&content, left)?,
+        };
+        if open == Some(0) {
+            visible.bricks.clear();
+        } else if open.is_some() {
+            visible.bricks.retain(|brick| brick.open() > 0);
+        }
+        self.progress.open = open.unwrap_or(pixels);
+        let left = Amount::of(content.bricks, &visible.bricks);
+        self.progress.skipped += self.progress.left - left;
+        self.progress.left = left;
+        if open.is_some() {
+            let (view, origin) = (&self.view, self.scene.origin);
+            stages.refine(&Frame { view, origin, bricks: self.bricks }, visible);
+        }
+        Ok(())
+    }
+
+    fn step(&mut self) -> Result<Progress, D::Error> {
+        let is_new = std::mem::take(&mut self.is_new);
+        if !(is_new && self.recall()?) {
+            self.draw()?;
+        }
+        self.survey()?;
+        Ok(self.progress)
+    }
+
+    fn pixels(&self) -> u64 {
+        u64::from(self.view.width()) * u64::from(self.view.height())
     }
 }
 
-impl<R: Record, D: Renderer<R>> Iterator for Progressive<'_, R, D> {
-    type Item = Result<Step, D::Error>;
+/// The fewest records that are drawn at once for a budget of time.
+const SMALLEST: u64 = 1 << 14;
+
+fn content<'a, R, G: Bricks>(scene: &'a Scene<R>, bricks: &'a G) -> Content<'a, R> {
+    Content { scene, bricks: bricks.bricks(), blocks: bricks.blocks() }
+}
+
+impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Iterator for Progressive<'_, R, G, S, D> {
+    type Item = Result<Progress, D::Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let left = self.batch.visible;
-        if left.is_empty() {
+        if self.left().is_empty() {
             return None;
         }
-        let mut records = 0;
-        let enough = left.iter().position(|brick| {
-            records += self.batch.bricks[brick.index as usize].records.len() as u64;
-            records >= self.budget
-        });
-        let (now, later) = left.split_at(enough.map_or(left.len(), |last| last + 1));
-        self.batch.visible = later;
-        let batch = Batch { visible: now, ..self.batch };
-        if let Err(error) = self.renderer.draw(&batch) {
-            self.batch.visible = &[];
-            return Some(Err(error));
+        let step = self.step();
+        if step.is_err() {
+            self.pipeline.visible.bricks.clear();
         }
-        self.step.drawn = self.renderer.progress();
-        self.step.left.bricks -= now.len() as u64;
-        self.step.left.records -= records;
-        Some(Ok(self.step))
+        Some(step)
     }
 }
 
-impl<R, D> fmt::Debug for Progressive<'_, R, D> {
+impl<R, G, S, D> fmt::Debug for Progressive<'_, R, G, S, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Progressive").field("step", &self.step).finish_non_exhaustive()
+        f.debug_struct("Progressive").field("progress", &self.progress).finish_non_exhaustive()
     }
 }

@@ -5,7 +5,7 @@ use crate::{
     disc::{Disc, LANES, Target},
 };
 use glam::DVec3;
-use puncta_core::{Batch, Record, VisibleBrick};
+use puncta_core::{Content, Record, VisibleBrick};
 use std::ops::RangeInclusive;
 
 /// Some rows of a picture. A row has `stride` pixels, of which the last ones are not seen: so eight
@@ -55,15 +55,16 @@ impl Band<'_> {
     /// Draws the records of these bricks, as far as they lie in this band.
     pub(crate) fn draw<R: Record>(
         &mut self,
-        batch: &Batch<'_, R>,
+        content: &Content<'_, R>,
+        bricks: &[VisibleBrick],
         rows_of_bricks: &[RangeInclusive<i64>],
     ) {
-        let all = batch.scene.records.as_slice();
-        for (VisibleBrick { index, .. }, rows) in batch.visible.iter().zip(rows_of_bricks) {
+        let all = content.scene.records.as_slice();
+        for (brick, rows) in bricks.iter().zip(rows_of_bricks) {
             if *rows.start() > self.last_row() || *rows.end() < self.first_row {
                 continue;
             }
-            let records = batch.bricks[*index as usize].records.clone();
+            let records = content.bricks[brick.index() as usize].records.clone();
             let members = &all[records.start as usize..records.end as usize];
             for (id, record) in records.zip(members) {
                 self.draw_sphere(record, id);

@@ -5,7 +5,7 @@ use crate::{
     band::{Band, stride},
     camera::Camera,
 };
-use puncta_core::{Batch, NO_RECORD, Picture, Progress, Record, Renderer, View};
+use puncta_core::{Amount, Content, NO_RECORD, Picture, Record, Renderer, View, VisibleBrick};
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
 
@@ -41,7 +41,6 @@ struct Drawing {
     view: View,
     depth: Vec<f32>,
     id: Vec<u32>,
-    progress: Progress,
 }
 
 impl<R: Record> Renderer<R> for CpuRenderer {
@@ -50,13 +49,8 @@ impl<R: Record> Renderer<R> for CpuRenderer {
     fn begin(&mut self, view: &View) -> Result<(), Error> {
         let pixels = stride(view.width()) * view.height() as usize;
         let mut drawing = self.frame.take().map_or_else(
-            || Drawing {
-                view: view.clone(),
-                depth: Vec::new(),
-                id: Vec::new(),
-                progress: Progress::default(),
-            },
-            |old| Drawing { view: view.clone(), progress: Progress::default(), ..old },
+            || Drawing { view: view.clone(), depth: Vec::new(), id: Vec::new() },
+            |old| Drawing { view: view.clone(), ..old },
         );
         drawing.depth.clear();
         drawing.depth.resize(pixels, f32::INFINITY);
@@ -66,12 +60,12 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         Ok(())
     }
 
-    fn draw(&mut self, batch: &Batch<'_, R>) -> Result<(), Error> {
+    fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
         let drawing = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
-        batch.validate()?;
-        let camera = &Camera::new(&drawing.view, batch.scene.origin);
-        let originals = batch.scene.attributes.ids.as_deref();
-        let rows_of_bricks = rows_of_bricks(camera, batch);
+        content.validate(bricks)?;
+        let camera = &Camera::new(&drawing.view, content.scene.origin);
+        let originals = content.scene.attributes.ids.as_deref();
+        let rows_of_bricks = rows_of_bricks(camera, content, bricks);
         let stride = stride(drawing.view.width());
         let bands = rayon::current_num_threads() * BANDS_PER_THREAD;
         let rows = (drawing.view.height() as usize).div_ceil(bands).max(BAND_ROWS_MIN);
@@ -79,11 +73,13 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         let ids = drawing.id.par_chunks_mut(stride * rows);
         depths.zip(ids).enumerate().with_max_len(1).for_each(|(band, (depth, id))| {
             let first_row = (band * rows) as i64;
-            Band { camera, ids: originals, first_row, stride, depth, id }
-                .draw(batch, &rows_of_bricks);
+            Band { camera, ids: originals, first_row, stride, depth, id }.draw(
+                content,
+                bricks,
+                &rows_of_bricks,
+            );
         });
-        drawing.progress += Progress::of(batch.bricks, batch.visible);
-        Ok(())
+        Ok(Amount::of(content.bricks, bricks))
     }
 
     fn finish(&mut self) -> Result<Picture, Error> {
@@ -99,27 +95,20 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         }
         Ok(picture)
     }
-
-    fn progress(&self) -> Progress {
-        self.drawn()
-    }
-}
-
-impl CpuRenderer {
-    /// What was drawn since the picture was begun, whatever the type of the records.
-    #[must_use]
-    pub fn drawn(&self) -> Progress {
-        self.frame.as_ref().map_or_else(Progress::default, |drawing| drawing.progress)
-    }
 }
 
 /// The rows that each brick of the batch may cover.
-fn rows_of_bricks<R: Record>(camera: &Camera, batch: &Batch<'_, R>) -> Vec<RangeInclusive<i64>> {
+fn rows_of_bricks<R>(
+    camera: &Camera,
+    content: &Content<'_, R>,
+    bricks: &[VisibleBrick],
+) -> Vec<RangeInclusive<i64>> {
+    let all = content.bricks;
     let rows = |index: u32| {
-        let brick = &batch.bricks[index as usize];
+        let brick = &all[index as usize];
         let (min, max) = (brick.bounds.min.as_dvec3(), brick.bounds.max.as_dvec3());
         let half = (max - min) * 0.5;
         camera.rows_of_box(min + half, half + f64::from(brick.radius_max))
     };
-    batch.visible.par_iter().map(|visible| rows(visible.index)).collect()
+    bricks.par_iter().map(|brick| rows(brick.index())).collect()
 }

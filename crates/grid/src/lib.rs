@@ -20,7 +20,7 @@ The grid follows section 3.1.1 of *Visibility-Driven Progressive Rendering of La
 the thesis whose methods puncta is built on: cells are cubes, and records are sorted in place by
 counting. The thesis sorts in one thread, straight into cells. Here all cores sort, in two steps that
 suit the memory: into some thousand buckets first, then each bucket within the cache. It owns no
-records. Beside them it needs 44 bytes for each brick, 4 more if there are colors, and while sorting
+records. Beside them it needs 45 bytes for each brick, 4 more if there are colors, and while sorting
 up to 20 more, a megabyte, and up to 2.5 megabytes for each thread: those only if cells and records
 are many. Cells without records cost nothing.
 */
@@ -52,7 +52,7 @@ use crate::{
     leaf::How,
     rows::Rows,
 };
-use puncta_core::{Brick, MAX_RECORDS, NO_RECORD, Record, Scene};
+use puncta_core::{Block, Brick, Bricks, MAX_RECORDS, NO_RECORD, Record, Scene};
 use rayon::prelude::*;
 
 /// How to lay the grid.
@@ -127,6 +127,7 @@ pub struct Grid {
     cells: Cells,
     layout: Layout,
     bricks: Vec<Brick>,
+    blocks: Vec<Block>,
     /// The code of the cell of each brick, ascending.
     codes: Vec<u32>,
     /// The mean color of each brick, if the records have colors.
@@ -176,7 +177,7 @@ impl Grid {
         let colors = rows.colors.map(|_| Vec::new());
         if rows.len() == 0 {
             let (cells, layout) = (Cells::EMPTY, Layout::new([0; 3], 0));
-            return Ok(Self { cells, layout, bricks: vec![], codes: vec![], colors });
+            return Ok(Self::new(cells, layout, (vec![], vec![]), colors));
         }
         let records = &*rows.records;
         let mut placement = match config.fit {
@@ -197,7 +198,18 @@ impl Grid {
         let how = How { coder, layout, leaf, sides: cells.sides(), stable };
         let found = sort::sort(rows, how, &census.counts);
         let colors = colors.map(|_| found.colors);
-        Ok(Self { cells, layout, bricks: found.bricks, codes: found.codes, colors })
+        Ok(Self::new(cells, layout, (found.bricks, found.codes), colors))
+    }
+
+    /// The grid of these bricks and their codes.
+    pub(crate) fn new(
+        cells: Cells,
+        layout: Layout,
+        (bricks, codes): (Vec<Brick>, Vec<u32>),
+        colors: Option<Vec<[u8; 4]>>,
+    ) -> Self {
+        let blocks = Block::of_runs(&bricks);
+        Self { cells, layout, bricks, blocks, codes, colors }
     }
 
     /// The cells of the grid.
@@ -242,14 +254,19 @@ impl Grid {
     #[must_use]
     pub fn bytes(&self) -> usize {
         size_of_val(self.bricks.as_slice())
+            + size_of_val(self.blocks.as_slice())
             + size_of_val(self.codes.as_slice())
             + self.colors.as_ref().map_or(0, |colors| size_of_val(colors.as_slice()))
     }
 }
 
-impl AsRef<[Brick]> for Grid {
-    fn as_ref(&self) -> &[Brick] {
+impl Bricks for Grid {
+    fn bricks(&self) -> &[Brick] {
         &self.bricks
+    }
+
+    fn blocks(&self) -> &[Block] {
+        &self.blocks
     }
 }
 

@@ -12,6 +12,6 @@ impl<G: ?Sized> Stage<G> for Depth {
     fn apply(&mut self, _frame: &Frame<'_, G>, visible: &mut Visible) {
         visible
             .bricks
-            .sort_unstable_by(|a, b| a.near.total_cmp(&b.near).then(a.index.cmp(&b.index)));
+            .sort_unstable_by(|a, b| a.near().total_cmp(&b.near()).then(a.index().cmp(&b.index())));
     }
 }

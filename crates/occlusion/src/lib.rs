@@ -18,7 +18,7 @@ let view = View::look_at(DVec3::new(55.0, 0.0, 0.0), DVec3::new(99.0, 0.0, 0.0),
 let mut visible = Visible::all(grid.bricks(), scene.origin, &view);
 let frame = Frame { view: &view, origin: scene.origin, bricks: &grid };
 (FrustumCull, Depth).apply(&frame, &mut visible);
-let seen: Vec<u32> = visible.bricks.iter().map(|brick| brick.index).collect();
+let seen: Vec<u32> = visible.bricks.iter().map(|brick| brick.index()).collect();
 assert_eq!(seen, [5, 6, 7, 8, 9]);
 # Ok::<(), Box<dyn std::error::Error>>(())
 ```

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
-use puncta_core::{Aabb, Brick, Frame, Stage, View, Visible};
+use puncta_core::{Aabb, Block, Brick, Bricks, Frame, Stage, View, Visible};
 use puncta_occlusion::{Depth, FrustumCull};
 
 fn point(size: f64) -> impl Strategy<Value = DVec3> {
@@ -55,6 +55,21 @@ fn points(brick: &Brick) -> Vec<DVec3> {
     bases.flat_map(around).collect()
 }
 
+struct Blocked {
+    bricks: Vec<Brick>,
+    blocks: Vec<Block>,
+}
+
+impl Bricks for Blocked {
+    fn bricks(&self) -> &[Brick] {
+        &self.bricks
+    }
+
+    fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
 
@@ -76,11 +91,37 @@ proptest! {
         let mut visible = Visible::all(&bricks, origin, &view);
         FrustumCull.apply(&Frame { view: &view, origin, bricks: &bricks }, &mut visible);
         for (index, brick) in (0_u32..).zip(&bricks) {
-            let kept = visible.bricks.iter().any(|visible| visible.index == index);
+            let kept = visible.bricks.iter().any(|visible| visible.index() == index);
             if points(brick).into_iter().any(|point| is_inside(&view, origin, point)) {
                 prop_assert!(kept, "{:?} was culled", brick);
             }
         }
+    }
+
+    #[test]
+    fn blocks_change_nothing(
+        view in view(),
+        bricks in prop::collection::vec(brick(), 0..400),
+        seed in any::<u32>(),
+    ) {
+        let cull = |visible: &mut Visible| {
+            let blocks = Block::of_runs(&bricks);
+            let blocked = Blocked { bricks: bricks.clone(), blocks };
+            let mut expected = visible.clone();
+            let frame = Frame { view: &view, origin: DVec3::ZERO, bricks: &bricks };
+            FrustumCull.apply(&frame, &mut expected);
+            let frame = Frame { view: &view, origin: DVec3::ZERO, bricks: &blocked };
+            FrustumCull.apply(&frame, visible);
+            expected
+        };
+        let mut visible = Visible::all(&bricks, DVec3::ZERO, &view);
+        let expected = cull(&mut visible);
+        prop_assert_eq!(&visible, &expected);
+        // In another order, too.
+        let mut visible = Visible::all(&bricks, DVec3::ZERO, &view);
+        visible.bricks.sort_by_key(|brick| brick.index().wrapping_mul(seed | 1));
+        let expected = cull(&mut visible);
+        prop_assert_eq!(&visible, &expected);
     }
 
     #[test]
@@ -89,7 +130,7 @@ proptest! {
         let frame = Frame { view: &view, origin: DVec3::ZERO, bricks: &bricks };
         Depth.apply(&frame, &mut visible);
         prop_assert_eq!(visible.bricks.len(), bricks.len());
-        prop_assert!(visible.bricks.is_sorted_by(|a, b| (a.near, a.index) <= (b.near, b.index)));
+        prop_assert!(visible.bricks.is_sorted_by(|a, b| (a.near(), a.index()) <= (b.near(), b.index())));
     }
 }
 
@@ -155,6 +196,6 @@ fn what_lies_aside_or_behind_is_culled() {
     let mut visible = Visible::all(&bricks, DVec3::ZERO, &view);
     let frame = Frame { view: &view, origin: DVec3::ZERO, bricks: &bricks };
     FrustumCull.apply(&frame, &mut visible);
-    let kept: Vec<u32> = visible.bricks.iter().map(|brick| brick.index).collect();
+    let kept: Vec<u32> = visible.bricks.iter().map(|brick| brick.index()).collect();
     assert_eq!(kept, [0, 3]);
 }

@@ -9,7 +9,7 @@ pub(crate) fn grid(header: &Header, bricks: Vec<Brick>, codes: Vec<u32>) -> Resu
     check_places(header)?;
     if header.records == 0 {
         let layout = Layout::new([0; 3], 0);
-        return Ok(Grid { cells: Cells::EMPTY, layout, bricks, codes, colors: None });
+        return Ok(Grid::new(Cells::EMPTY, layout, (bricks, codes), None));
     }
     let cells = cells(header)?;
     let bits = Layout::new(header.dims, 0).bits();
@@ -45,7 +45,7 @@ pub(crate) fn grid(header: &Header, bricks: Vec<Brick>, codes: Vec<u32>) -> Resu
             }
         }
     }
-    Ok(Grid { cells, layout, bricks, codes, colors: None })
+    Ok(Grid::new(cells, layout, (bricks, codes), None))
 }
 
 /// The cells of a file.

@@ -38,7 +38,7 @@ pub struct ConvertConfig {
     /// The memory to use, in bytes; 2 GiB by default.
     ///
     /// Buffers keep to it, down to some 64 rows for each thread. The table of bricks, which is in
-    /// memory to the end, comes on top: 44 bytes for each brick. So do a sample of up to a million
+    /// memory to the end, comes on top: 45 bytes for each brick. So do a sample of up to a million
     /// records, and rows that share cell *and* id, if they are that many.
     pub memory: u64,
     /// What to do with records that no grid can hold.
