@@ -1,12 +1,45 @@
 //! Bands: runs of rows of a picture, each drawn by one thread.
 
 use crate::{
+    bound::ScreenBound,
     camera::{Camera, ScreenBox},
     disc::{Disc, LANES, Target},
+    tiles::Tiles,
 };
 use glam::DVec3;
-use puncta_core::{Content, Record, VisibleBrick};
-use std::ops::RangeInclusive;
+use puncta_core::{Amount, Record};
+use std::{
+    ops::Range,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+/// Some records of a brick, to be drawn together.
+#[derive(Debug)]
+pub(crate) struct Piece<'a> {
+    pub(crate) bound: ScreenBound,
+    pub(crate) members: Members<'a>,
+    /// Whether a band had to draw it, because it was not hidden.
+    pub(crate) is_drawn: AtomicBool,
+}
+
+impl Piece<'_> {
+    /// The amount that was drawn.
+    pub(crate) fn drawn(&self) -> Amount {
+        let records = match &self.members {
+            Members::All(range) => range.len(),
+            Members::Some(ids) => ids.len(),
+        };
+        let is_drawn = u64::from(self.is_drawn.load(Ordering::Relaxed));
+        Amount { bricks: is_drawn, records: is_drawn * records as u64 }
+    }
+}
+
+/// Which records.
+#[derive(Clone, Debug)]
+pub(crate) enum Members<'a> {
+    All(Range<u32>),
+    Some(&'a [u32]),
+}
 
 /// Some rows of a picture. A row has `stride` pixels, of which the last ones are not seen: so eight
 /// pixels can always be drawn at once.
@@ -19,6 +52,7 @@ pub(crate) struct Band<'a> {
     pub(crate) stride: usize,
     pub(crate) depth: &'a mut [f32],
     pub(crate) id: &'a mut [u32],
+    pub(crate) tiles: Tiles<'a>,
 }
 
 /// A view depth in front of which a sphere has no point, whether computed in `f64` or in `f32`, whose
@@ -46,28 +80,28 @@ fn bits(mut mask: u32) -> impl Iterator<Item = u32> {
     })
 }
 
-/// The number of pixels of a row in memory.
-pub(crate) fn stride(width: u32) -> usize {
-    (width as usize).next_multiple_of(LANES) + LANES
-}
-
 impl Band<'_> {
-    /// Draws the records of these bricks, as far as they lie in this band.
-    pub(crate) fn draw<R: Record>(
-        &mut self,
-        content: &Content<'_, R>,
-        bricks: &[VisibleBrick],
-        rows_of_bricks: &[RangeInclusive<i64>],
-    ) {
-        let all = content.scene.records.as_slice();
-        for (brick, rows) in bricks.iter().zip(rows_of_bricks) {
-            if *rows.start() > self.last_row() || *rows.end() < self.first_row {
+    /// Draws these pieces, as far as they lie in this band and can be seen.
+    pub(crate) fn draw<R: Record>(&mut self, records: &[R], pieces: &[Piece<'_>]) {
+        let (first, last) = (self.first_row, self.last_row());
+        for piece in pieces {
+            let rows = piece.bound.rows.map(i64::from);
+            if rows[0] > last || rows[1] < first || self.tiles.hides(&piece.bound, self.depth) {
                 continue;
             }
-            let records = content.bricks[brick.index() as usize].records.clone();
-            let members = &all[records.start as usize..records.end as usize];
-            for (id, record) in records.zip(members) {
-                self.draw_sphere(record, id);
+            piece.is_drawn.store(true, Ordering::Relaxed);
+            match &piece.members {
+                Members::All(range) => {
+                    let members = &records[range.start as usize..range.end as usize];
+                    for (id, record) in range.clone().zip(members) {
+                        self.draw_sphere(record, id);
+                    }
+                }
+                Members::Some(ids) => {
+                    for &id in *ids {
+                        self.draw_sphere(&records[id as usize], id);
+                    }
+                }
             }
         }
     }
@@ -84,6 +118,10 @@ impl Band<'_> {
         if first > last || screen.columns.is_empty() {
             return;
         }
+        let touched = |range: &std::ops::RangeInclusive<i64>| {
+            [*range.start() as usize, *range.end() as usize]
+        };
+        self.tiles.touch(touched(&screen.columns), touched(&screen.rows));
         let nearest = nearest(center.z, radius);
         let ball = Ball { center, radius, nearest, id };
         match Disc::new(self.camera, center, radius) {

@@ -105,6 +105,16 @@ impl Camera {
         self.origin + DVec3::new(along(self.right), along(self.up), along(self.forward))
     }
 
+    /// The coordinates along right, up and forward of a difference of positions.
+    pub(crate) fn turn(&self, offset: DVec3) -> DVec3 {
+        DVec3::new(self.right.dot(offset), self.up.dot(offset), self.forward.dot(offset))
+    }
+
+    /// The number of columns and rows.
+    pub(crate) const fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
     /// Where the ray of a pixel passes: camera x and y, at view depth 1 in perspective.
     #[inline]
     #[must_use]
@@ -216,26 +226,6 @@ impl Camera {
     /// The pixel coordinates where a ray passes.
     pub(crate) fn pixel_of(&self, ray: DVec2) -> DVec2 {
         DVec2::new(self.middle.x + ray.x * self.per_pixel, self.middle.y - ray.y * self.per_pixel)
-    }
-
-    /// The rows that a world box may cover; `center` and `half` as stored.
-    pub(crate) fn rows_of_box(&self, center: DVec3, half: DVec3) -> RangeInclusive<i64> {
-        let corner = |i: u32| {
-            let sign = |bit: u32| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
-            self.place(center + half * DVec3::new(sign(0), sign(1), sign(2)))
-        };
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for corner in (0..8).map(corner) {
-            // A box that reaches before the near plane, or beyond all numbers, may cover anything.
-            let is_beyond = corner.z >= self.near && corner.is_finite();
-            if !is_beyond && (self.is_perspective || !corner.is_finite()) {
-                return 0..=i64::from(self.height) - 1;
-            }
-            let y = if self.is_perspective { corner.y / corner.z } else { corner.y };
-            low = low.min(self.middle.y - y * self.per_pixel);
-            high = high.max(self.middle.y - y * self.per_pixel);
-        }
-        pixels((low - 1.0, high + 1.0), self.height)
     }
 }
 

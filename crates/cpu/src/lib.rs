@@ -39,13 +39,19 @@ pool. What a pixel shows does not depend on the order of the spheres nor on the 
 */
 
 mod band;
+mod bound;
+mod cache;
 mod camera;
 mod colormap;
 mod disc;
+mod drawing;
 mod error;
+mod knowledge;
 mod legend;
 mod renderer;
 mod shade;
+mod survey;
+mod tiles;
 
 pub use crate::{
     camera::{Camera, Hit},

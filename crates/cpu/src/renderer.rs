@@ -1,19 +1,22 @@
-//! The renderer: bands of rows, drawn in parallel.
+//! The renderer: what is drawn, what is left out, and what is still open.
 
 use crate::{
     Error,
-    band::{Band, stride},
+    band::{Members, Piece},
+    bound::ScreenBound,
+    cache,
     camera::Camera,
+    drawing::Drawing,
+    knowledge::Knowledge,
+    survey::{self, Outlook},
 };
-use puncta_core::{Amount, Content, NO_RECORD, Picture, Record, Renderer, View, VisibleBrick};
-use rayon::prelude::*;
-use std::ops::RangeInclusive;
+use puncta_core::{Amount, Content, Picture, Record, Renderer, View, VisibleBrick};
+use std::sync::atomic::AtomicBool;
 
-/// The number of bands for each thread: some of them show more than others.
-const BANDS_PER_THREAD: usize = 4;
-
-/// The smallest number of rows of a band: a sphere is set up once for each band that it lies in.
-const BAND_ROWS_MIN: usize = 32;
+/// The share of the bricks that are drawn before blocks are tested for the first time, and the
+/// smallest number: from then on twice as many each time.
+const FIRST_SHARE: usize = 32;
+const FIRST_MIN: usize = 256;
 
 /// Draws spheres exactly, on all cores of the present rayon pool.
 ///
@@ -27,65 +30,100 @@ const BAND_ROWS_MIN: usize = 32;
 /// angle nor the distance of the scene from the world's origin changes that. Only the last digits of
 /// `f64` set a limit: a sphere whose surface is nearer to the eye than 1e-8 of its radius.
 ///
+/// Bricks and blocks of bricks that lie behind what was drawn before are left out; the picture is the
+/// same as if they were drawn. It does not depend on the number of threads, and neither does what is
+/// left out.
+///
 /// # Examples
 ///
 /// See the [crate's page](crate).
 #[derive(Clone, Debug, Default)]
 pub struct CpuRenderer {
     frame: Option<Drawing>,
-}
-
-/// A picture that is being drawn.
-#[derive(Clone, Debug)]
-struct Drawing {
-    view: View,
-    depth: Vec<f32>,
-    id: Vec<u32>,
+    /// The ids of the picture before this one, and whether anything was drawn since.
+    last: Vec<u32>,
+    has_drawn: bool,
+    knowledge: Knowledge,
+    outlook: Outlook,
 }
 
 impl<R: Record> Renderer<R> for CpuRenderer {
     type Error = Error;
 
     fn begin(&mut self, view: &View) -> Result<(), Error> {
-        let pixels = stride(view.width()) * view.height() as usize;
-        let mut drawing = self.frame.take().map_or_else(
-            || Drawing { view: view.clone(), depth: Vec::new(), id: Vec::new() },
-            |old| Drawing { view: view.clone(), ..old },
-        );
-        drawing.depth.clear();
-        drawing.depth.resize(pixels, f32::INFINITY);
-        drawing.id.clear();
-        drawing.id.resize(pixels, NO_RECORD);
-        self.frame = Some(drawing);
+        self.knowledge.clear();
+        self.outlook.clear();
+        match &mut self.frame {
+            Some(drawing) => {
+                // A picture of nothing is no reason to forget the one before.
+                if self.has_drawn {
+                    std::mem::swap(&mut self.last, &mut drawing.id);
+                }
+                drawing.restart(view);
+            }
+            None => self.frame = Some(Drawing::new(view)),
+        }
+        self.has_drawn = false;
         Ok(())
     }
 
     fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
+        let camera = self.prepare(content, bricks)?;
+        let (mut rest, mut drawn) = (bricks, Amount::default());
+        let mut count = (bricks.len() / FIRST_SHARE).max(FIRST_MIN);
+        while !rest.is_empty() {
+            let (now, later) = rest.split_at(count.min(rest.len()));
+            drawn += self.draw_round(content, &camera, now)?;
+            rest = later;
+            count *= 2;
+            if !rest.is_empty() {
+                let drawing = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
+                drawing.freshen();
+                self.knowledge.hide_blocks(content, drawing);
+            }
+        }
+        Ok(drawn)
+    }
+
+    fn recall(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<u64, Error> {
+        let camera = self.prepare(content, bricks)?;
+        let ids = cache::visible(&self.last);
+        let runs = cache::runs(&ids, content.bricks, bricks);
+        let visible: Vec<VisibleBrick> = runs.iter().map(|(brick, _)| *brick).collect();
+        let bounds = self.knowledge.bounds(content, &camera, &visible);
+        let pieces: Vec<Piece<'_>> = runs
+            .iter()
+            .zip(bounds)
+            .map(|((_, ids), bound)| piece(bound, Members::Some(ids)))
+            .collect();
+        self.draw_pieces(content, &camera, &pieces)?;
+        Ok(runs.iter().map(|(_, ids)| ids.len() as u64).sum())
+    }
+
+    fn forget(&mut self) {
+        self.last.clear();
+        self.has_drawn = false;
+    }
+
+    fn survey(
+        &mut self,
+        content: &Content<'_, R>,
+        left: &mut [VisibleBrick],
+    ) -> Result<Option<u64>, Error> {
+        let camera = self.prepare(content, left)?;
         let drawing = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
-        content.validate(bricks)?;
-        let camera = &Camera::new(&drawing.view, content.scene.origin);
-        let originals = content.scene.attributes.ids.as_deref();
-        let rows_of_bricks = rows_of_bricks(camera, content, bricks);
-        let stride = stride(drawing.view.width());
-        let bands = rayon::current_num_threads() * BANDS_PER_THREAD;
-        let rows = (drawing.view.height() as usize).div_ceil(bands).max(BAND_ROWS_MIN);
-        let depths = drawing.depth.par_chunks_mut(stride * rows);
-        let ids = drawing.id.par_chunks_mut(stride * rows);
-        depths.zip(ids).enumerate().with_max_len(1).for_each(|(band, (depth, id))| {
-            let first_row = (band * rows) as i64;
-            Band { camera, ids: originals, first_row, stride, depth, id }.draw(
-                content,
-                bricks,
-                &rows_of_bricks,
-            );
-        });
-        Ok(Amount::of(content.bricks, bricks))
+        drawing.freshen();
+        self.knowledge.hide_blocks(content, drawing);
+        let bounds = self.knowledge.bounds(content, &camera, left);
+        self.knowledge.keep(left, &bounds);
+        self.outlook = survey::survey(drawing, left, &bounds);
+        Ok(Some(self.outlook.count(drawing)))
     }
 
     fn finish(&mut self) -> Result<Picture, Error> {
         let drawing = self.frame.as_ref().ok_or(puncta_core::Error::NotBegun)?;
         let mut picture = Picture::new(drawing.view.width(), drawing.view.height())?;
-        let (width, stride) = (picture.width as usize, stride(picture.width));
+        let (width, stride) = (picture.width as usize, drawing.stride);
         let seen = |row: usize| row * stride..row * stride + width;
         for (row, (depth, id)) in
             picture.depth.chunks_mut(width).zip(picture.id.chunks_mut(width)).enumerate()
@@ -97,18 +135,70 @@ impl<R: Record> Renderer<R> for CpuRenderer {
     }
 }
 
-/// The rows that each brick of the batch may cover.
-fn rows_of_bricks<R>(
-    camera: &Camera,
-    content: &Content<'_, R>,
-    bricks: &[VisibleBrick],
-) -> Vec<RangeInclusive<i64>> {
-    let all = content.bricks;
-    let rows = |index: u32| {
-        let brick = &all[index as usize];
-        let (min, max) = (brick.bounds.min.as_dvec3(), brick.bounds.max.as_dvec3());
-        let half = (max - min) * 0.5;
-        camera.rows_of_box(min + half, half + f64::from(brick.radius_max))
-    };
-    bricks.par_iter().map(|brick| rows(brick.index())).collect()
+impl CpuRenderer {
+    /// Whether the bricks that were left when [`Renderer::survey`] was last asked may still change a
+    /// pixel. Before that, all pixels are open.
+    ///
+    /// Those drawn since count as left.
+    #[must_use]
+    pub fn is_open(&self, column: u32, row: u32) -> bool {
+        let is_inside =
+            |drawing: &&Drawing| column < drawing.view.width() && row < drawing.view.height();
+        self.frame
+            .as_ref()
+            .filter(is_inside)
+            .is_some_and(|drawing| self.outlook.is_open(drawing, column as usize, row as usize))
+    }
+
+    /// Checks what is to be drawn, and gets ready for it.
+    fn prepare<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        bricks: &[VisibleBrick],
+    ) -> Result<Camera, Error> {
+        let drawing = self.frame.as_ref().ok_or(puncta_core::Error::NotBegun)?;
+        content.validate(bricks)?;
+        let camera = Camera::new(&drawing.view, content.scene.origin);
+        self.knowledge.prepare(content, &camera);
+        Ok(camera)
+    }
+
+    /// Draws some bricks, and tells how much of them it had to draw.
+    fn draw_round<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        camera: &Camera,
+        bricks: &[VisibleBrick],
+    ) -> Result<Amount, Error> {
+        let bounds = self.knowledge.bounds(content, camera, bricks);
+        let members = |brick: &VisibleBrick| {
+            Members::All(content.bricks[brick.index() as usize].records.clone())
+        };
+        let seen = bricks.iter().zip(bounds).filter(|(_, bound)| !bound.is_empty());
+        let pieces: Vec<Piece<'_>> =
+            seen.map(|(brick, bound)| piece(bound, members(brick))).collect();
+        self.draw_pieces(content, camera, &pieces)
+    }
+
+    fn draw_pieces<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        camera: &Camera,
+        pieces: &[Piece<'_>],
+    ) -> Result<Amount, Error> {
+        let drawing = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
+        let ids = content.scene.attributes.ids.as_deref();
+        drawing.draw((camera, ids), content.scene.records.as_slice(), pieces);
+        let amounts = pieces.iter().map(Piece::drawn);
+        let drawn = amounts.fold(Amount::default(), |mut sum, amount| {
+            sum += amount;
+            sum
+        });
+        self.has_drawn |= drawn.bricks > 0;
+        Ok(drawn)
+    }
+}
+
+fn piece(bound: ScreenBound, members: Members<'_>) -> Piece<'_> {
+    Piece { bound, members, is_drawn: AtomicBool::new(false) }
 }
