@@ -192,6 +192,12 @@ impl<R, G, S, D> Progressive<'_, R, G, S, D> {
         &self.view
     }
 
+    /// The renderer.
+    #[must_use]
+    pub const fn renderer(&self) -> &D {
+        &self.pipeline.renderer
+    }
+
     /// The bricks that are left, in the order in which they are to be drawn.
     #[must_use]
     pub fn left(&self) -> &[VisibleBrick] {
