@@ -1,7 +1,7 @@
 //! Bands: runs of rows of a picture, each drawn by one thread.
 
 use crate::{
-    bound::ScreenBound,
+    bound::{ScreenBound, below},
     camera::{Camera, ScreenBox},
     disc::{Disc, LANES, Target},
     tiles::Tiles,
@@ -9,7 +9,7 @@ use crate::{
 use glam::DVec3;
 use puncta_core::{Amount, Record};
 use std::{
-    ops::Range,
+    ops::{Range, RangeInclusive},
     sync::atomic::{AtomicBool, Ordering},
 };
 
@@ -118,11 +118,13 @@ impl Band<'_> {
         if first > last || screen.columns.is_empty() {
             return;
         }
-        let touched = |range: &std::ops::RangeInclusive<i64>| {
-            [*range.start() as usize, *range.end() as usize]
-        };
-        self.tiles.touch(touched(&screen.columns), touched(&screen.rows));
+        let ends = |range: &RangeInclusive<i64>| [*range.start() as usize, *range.end() as usize];
+        let (columns, rows) = (ends(&screen.columns), ends(&screen.rows));
         let nearest = nearest(center.z, radius);
+        if self.tiles.surely_hide(columns, rows, below(nearest)) {
+            return;
+        }
+        self.tiles.touch(columns, rows);
         let ball = Ball { center, radius, nearest, id };
         match Disc::new(self.camera, center, radius) {
             Some(disc) => self.draw_disc(&disc, &ball, &screen),

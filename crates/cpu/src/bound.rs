@@ -177,7 +177,7 @@ fn whole(x: f64) -> u16 {
 /// The largest `f32` that is not above a number.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "rounding is what is meant")]
-fn below(x: f64) -> f32 {
+pub(crate) fn below(x: f64) -> f32 {
     let rounded = x as f32;
     if f64::from(rounded) > x { rounded.next_down() } else { rounded }
 }

@@ -51,6 +51,17 @@ impl Tiles<'_> {
         }
     }
 
+    /// Whether all pixels of the tiles around these are known to be nearer than a depth.
+    #[inline]
+    pub(crate) fn surely_hide(&self, columns: [usize; 2], rows: [usize; 2], nearest: f32) -> bool {
+        let across = self.stride / SIDE;
+        let mut tiles = (rows[0] - self.first_row) / SIDE..=(rows[1] - self.first_row) / SIDE;
+        tiles.all(|y| {
+            let row = &self.deepest[y * across..][columns[0] / SIDE..=columns[1] / SIDE];
+            row.iter().all(|&deepest| deepest < nearest)
+        })
+    }
+
     /// Whether all pixels of a bound that lie in these rows are nearer than it.
     pub(crate) fn hides(&mut self, bound: &ScreenBound, depth: &[f32]) -> bool {
         let count = depth.len() / self.stride;
