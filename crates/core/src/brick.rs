@@ -110,6 +110,7 @@ pub struct VisibleBrick {
     near: f32,
     far: f32,
     open: u32,
+    gain: f32,
 }
 
 impl VisibleBrick {
@@ -141,9 +142,18 @@ impl VisibleBrick {
         self.open
     }
 
-    /// Notes how many pixels it can still change, at most.
-    pub const fn set_open(&mut self, pixels: u32) {
+    /// How much of the picture it may be expected to change, in pixels: those where there is
+    /// nothing yet count fully, others by how far the brick reaches in front of what is there.
+    #[must_use]
+    #[inline]
+    pub const fn gain(&self) -> f32 {
+        self.gain
+    }
+
+    /// Notes how many pixels it can still change, at most, and how much it is expected to.
+    pub const fn set_open(&mut self, pixels: u32, gain: f32) {
         self.open = pixels;
+        self.gain = gain;
     }
 }
 
@@ -169,7 +179,8 @@ impl Visible {
             // Twice the rounding of the terms above, so that the bounds hold.
             let slack = 8.0 * f64::EPSILON * (distance + middle.abs() + reach);
             let (near, far) = (middle - reach - slack, middle + reach + slack);
-            VisibleBrick { index, near: below(near), far: -below(-far), open: u32::MAX }
+            let (near, far) = (below(near), -below(-far));
+            VisibleBrick { index, near, far, open: u32::MAX, gain: f32::INFINITY }
         };
         self.bricks.clear();
         self.bricks.extend((0_u32..).zip(bricks).map(place));

@@ -15,6 +15,10 @@ use rayon::prelude::*;
 /// How many bricks are looked at in one piece of work.
 const CHUNK: usize = 2048;
 
+/// How much a change counts where something is seen already: what is there is often like what will
+/// be. (Between 0.25 and 1 the orders that build on it differ little.)
+const COVERED: f32 = 0.5;
+
 /// What can still change.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outlook {
@@ -70,7 +74,8 @@ pub(crate) fn survey(
         .fold(empty, |mut nearest, (bricks, bounds)| {
             let view = Look { drawing, shallowest: &shallowest };
             for (brick, bound) in bricks.iter_mut().zip(bounds) {
-                brick.set_open(view.open(bound, &mut nearest));
+                let (open, gain) = view.open(brick, bound, &mut nearest);
+                brick.set_open(open, gain);
             }
             nearest
         })
@@ -102,15 +107,16 @@ struct Look<'a> {
 }
 
 impl Look<'_> {
-    /// How many pixels are open for a bound; notes its depth in their tiles.
-    fn open(&self, bound: &ScreenBound, nearest: &mut [f32]) -> u32 {
+    /// How many pixels are open for a brick, and what it may gain; notes its depth in their tiles.
+    fn open(&self, brick: &VisibleBrick, bound: &ScreenBound, nearest: &mut [f32]) -> (u32, f32) {
         if bound.is_empty() {
-            return 0;
+            return (0, 0.0);
         }
         let across = self.drawing.stride / SIDE;
         let [left, right] = bound.columns.map(usize::from);
         let [top, bottom] = bound.rows.map(usize::from);
-        let mut sum = 0;
+        let scale = 1.0 / (brick.far() - bound.nearest);
+        let (mut sum, mut gain) = (0, 0.0);
         for y in top / SIDE..=bottom / SIDE {
             let rows = [top.max(y * SIDE), bottom.min(y * SIDE + SIDE - 1)];
             for x in left / SIDE..=right / SIDE {
@@ -119,23 +125,38 @@ impl Look<'_> {
                     continue;
                 }
                 let columns = [left.max(x * SIDE), right.min(x * SIDE + SIDE - 1)];
-                let open = if self.shallowest[tile] >= bound.nearest {
-                    (rows[1] - rows[0] + 1) * (columns[1] - columns[0] + 1)
+                let (open, more) = if self.shallowest[tile] == f32::INFINITY {
+                    let open = (rows[1] - rows[0] + 1) * (columns[1] - columns[0] + 1);
+                    (open, open as f32)
                 } else {
-                    self.count(columns, rows, bound.nearest)
+                    self.count(columns, rows, (bound.nearest, scale))
                 };
                 if open > 0 {
                     nearest[tile] = nearest[tile].min(bound.nearest);
                     sum += open;
+                    gain += more;
                 }
             }
         }
-        u32::try_from(sum).unwrap_or(u32::MAX)
+        (u32::try_from(sum).unwrap_or(u32::MAX), gain)
     }
 
-    fn count(&self, [left, right]: [usize; 2], [top, bottom]: [usize; 2], nearest: f32) -> usize {
-        let row = |row: usize| &self.drawing.depth[row * self.drawing.stride..][left..=right];
-        let open = |row: &[f32]| row.iter().filter(|&&depth| depth >= nearest).count();
-        (top..=bottom).map(|y| open(row(y))).sum()
+    /// The open pixels of a rectangle, and what they may gain, for a brick that begins at a depth
+    /// and has this scale (one divided by its length along the line of sight).
+    fn count(
+        &self,
+        [left, right]: [usize; 2],
+        [top, bottom]: [usize; 2],
+        (nearest, scale): (f32, f32),
+    ) -> (usize, f32) {
+        let (mut open, mut gain) = (0, 0.0);
+        for row in top..=bottom {
+            for &depth in &self.drawing.depth[row * self.drawing.stride..][left..=right] {
+                open += usize::from(depth >= nearest);
+                let share = ((depth - nearest) * scale).clamp(0.0, 1.0);
+                gain += if depth == f32::INFINITY { 1.0 } else { COVERED * share };
+            }
+        }
+        (open, gain)
     }
 }
