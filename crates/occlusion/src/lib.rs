@@ -26,5 +26,10 @@ assert_eq!(seen, [5, 6, 7, 8, 9]);
 
 mod depth;
 mod frustum;
+mod graph;
 
-pub use crate::{depth::Depth, frustum::FrustumCull};
+pub use crate::{
+    depth::Depth,
+    frustum::FrustumCull,
+    graph::{Edge, OcclusionGraph},
+};
