@@ -79,8 +79,8 @@ pub enum Edge {
 /// assert_eq!(graph.levels(), [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]);
 ///
 /// // How many records are to be drawn before a brick, at least, on the way to it?
-/// let records = |node: usize| grid.bricks()[node].records.len() as f32;
-/// assert_eq!(graph.least_sums(records)[..3], [0.0, 10.0, 20.0]);
+/// let records: Vec<f32> = grid.bricks().iter().map(|brick| brick.records.len() as f32).collect();
+/// assert_eq!(graph.least_sums(&records)[..3], [0.0, 10.0, 20.0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default)]
@@ -149,6 +149,17 @@ impl OcclusionGraph {
         })
     }
 
+    /// Whether a node sees the camera with some side.
+    ///
+    /// # Panics
+    ///
+    /// When there is no such node.
+    #[must_use]
+    #[inline]
+    pub fn is_visible(&self, node: usize) -> bool {
+        self.edges[node].contains(&CAMERA)
+    }
+
     /// All nodes, each one after those that hide it.
     ///
     /// They ascend by the distance of their cell from that of the camera, along the axes.
@@ -163,17 +174,17 @@ impl OcclusionGraph {
     }
 
     /// For each node, the least sum of the weights of the nodes on a path to the camera, without its
-    /// own: 0 if it is directly visible, infinity if it is never seen.
+    /// own weight: 0 if it is directly visible, infinity if it is never seen.
     ///
     /// The sums are those of `f32`, added from the camera on. They are least if no weight is negative
-    /// or NaN; such count as 0.
-    pub fn least_sums(&mut self, weight: impl Fn(usize) -> f32) -> &[f32] {
-        self.sweep.least_sums(&self.edges, weight)
+    /// or NaN; such count as 0, and so does a weight that is missing.
+    pub fn least_sums(&mut self, weights: &[f32]) -> &[f32] {
+        self.sweep.least_sums(&self.edges, weights)
     }
 
     /// As [`Self::least_sums`], but only over the paths to the camera that have the fewest edges.
-    pub fn shortest_sums(&mut self, weight: impl Fn(usize) -> f32) -> &[f32] {
-        self.sweep.shortest_sums(&self.edges, weight)
+    pub fn shortest_sums(&mut self, weights: &[f32]) -> &[f32] {
+        self.sweep.shortest_sums(&self.edges, weights)
     }
 }
 

@@ -76,11 +76,7 @@ impl Sweep {
     }
 
     /// The least of the sums that what hides a node hands on.
-    pub(crate) fn least_sums(
-        &mut self,
-        edges: &[[u32; 3]],
-        weight: impl Fn(usize) -> f32,
-    ) -> &[f32] {
+    pub(crate) fn least_sums(&mut self, edges: &[[u32; 3]], weights: &[f32]) -> &[f32] {
         self.clear_sums(edges.len());
         for &node in &self.order {
             let node = node as usize;
@@ -91,17 +87,13 @@ impl Sweep {
             });
             let least = least[0].min(least[1]).min(least[2]);
             self.sums[node] = least;
-            self.handed[node] = least + weight(node).max(0.0);
+            self.handed[node] = least + weights.get(node).map_or(0.0, |weight| weight.max(0.0));
         }
         &self.sums
     }
 
     /// The least of the sums that what hides a node and has a lower level hands on.
-    pub(crate) fn shortest_sums(
-        &mut self,
-        edges: &[[u32; 3]],
-        weight: impl Fn(usize) -> f32,
-    ) -> &[f32] {
+    pub(crate) fn shortest_sums(&mut self, edges: &[[u32; 3]], weights: &[f32]) -> &[f32] {
         self.levels(edges);
         self.clear_sums(edges.len());
         for &node in &self.order {
@@ -116,7 +108,7 @@ impl Sweep {
             });
             let least = least[0].min(least[1]).min(least[2]);
             self.sums[node] = least;
-            self.handed[node] = least + weight(node).max(0.0);
+            self.handed[node] = least + weights.get(node).map_or(0.0, |weight| weight.max(0.0));
         }
         &self.sums
     }

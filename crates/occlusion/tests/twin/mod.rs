@@ -65,30 +65,41 @@ pub(crate) fn grid(dims: [u32; 3], percent: u64, dice: &mut Dice) -> Grid {
     grid
 }
 
-/// Five bricks, seen from the left and below, and which nodes are the dense one and the last one:
+/// Two layers of bricks, seen from the left and below by parallel rays, and the nodes of the first,
+/// the second and the last name:
 ///
 /// ```text
-/// dense last
-/// thin  thin
+/// dense last        middling also
+/// thin  thin                 middling
 ///       thin
 /// ```
-pub(crate) fn way_around() -> (World, [usize; 2]) {
+pub(crate) fn way_around() -> (World, [usize; 3]) {
+    let (dense, last, also) = ([0, 2, 0], [1, 2, 0], [1, 2, 2]);
+    let thin = [[0, 1, 0], [1, 1, 0], [1, 0, 0], last, also].map(|cell| (cell, 1));
+    let middling = [[0, 2, 2], [1, 1, 2]].map(|cell| (cell, 8));
     let mut spheres = Vec::new();
-    for (cell, count) in [([0, 2], 20), ([1, 2], 1), ([0, 1], 1), ([1, 1], 1), ([1, 0], 1)] {
+    for (cell, count) in thin.into_iter().chain(middling).chain([(dense, 20)]) {
         // Within the cells of width 1 that start at the least position.
-        let [x, y] = cell.map(|i: u8| f32::from(i) * 1.25);
-        spheres.extend(vec![Sphere::new([x, y, 0.0], 0.25); count]);
+        let center = cell.map(|i: u32| i as f32 * 1.25);
+        spheres.extend(vec![Sphere::new(center, 0.25); count]);
     }
     let mut scene = Scene::new(spheres);
     let resolution = Resolution::Width(1.0);
     let config = GridConfig { resolution, fit: Fit::Whole, ..GridConfig::default() };
     let grid = Grid::sort_scene(&mut scene, &config).unwrap();
-    assert_eq!(grid.dims(), [2, 3, 1]);
-    let eye = DVec3::new(-90.0, -100.0, 0.5);
-    let view = View::look_at(eye, DVec3::new(1.0, 1.0, 0.0), DVec3::Z).unwrap();
+    assert_eq!(grid.dims(), [2, 3, 3]);
+    let nodes = [dense, last, also].map(|place| grid.brick_at(place).unwrap() as usize);
+    let view = View::look_at(DVec3::new(-9.0, -10.0, 0.0), DVec3::ZERO, DVec3::Z).unwrap();
+    let view = view.with_orthographic(10.0).unwrap();
     let visible = Visible::all(grid.bricks(), DVec3::ZERO, &view);
-    let nodes = [[0, 2, 0], [1, 2, 0]].map(|place| grid.brick_at(place).unwrap() as usize);
     (World { grid, visible, view, origin: DVec3::ZERO }, nodes)
+}
+
+/// All bricks of a grid, seen from a place.
+pub(crate) fn seen_from(grid: Grid, eye: [f64; 3]) -> World {
+    let view = View::look_at(eye.into(), DVec3::ZERO, DVec3::Y).unwrap();
+    let visible = Visible::all(grid.bricks(), DVec3::ZERO, &view);
+    World { grid, visible, view, origin: DVec3::ZERO }
 }
 
 /// Where to put the camera, in cells: all ways to be on faces, edges, corners and lines of centers.
