@@ -19,8 +19,11 @@ const ARROWS: [(&str, &[&str]); 6] = [
 ];
 
 /// Crates that only some of ours may name.
-const RESERVED: [(&str, &[&str]); 3] =
-    [("memmap2", &["puncta-grid"]), ("rayon", &["puncta-cpu", "puncta-grid"]), ("wgpu", &[])];
+const RESERVED: [(&str, &[&str]); 3] = [
+    ("memmap2", &["puncta-grid"]),
+    ("rayon", &["puncta-cpu", "puncta-grid", "puncta-occlusion"]),
+    ("wgpu", &[]),
+];
 
 fn metadata() -> Metadata {
     MetadataCommand::new().no_deps().exec().unwrap()

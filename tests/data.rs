@@ -27,7 +27,7 @@ fn draw(path: &Path) -> (Loaded, f64) {
     let grid = Grid::sort_scene(&mut loaded.scene, &GridConfig::default()).unwrap();
     let view = View::look_at(DVec3::new(1.0, -2.0, 1.5), DVec3::ZERO, DVec3::Z).unwrap();
     let view = view.with_size(256, 256).unwrap().fitted(&loaded.scene.bounds());
-    let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
+    let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
     let picture = pipeline.render(&loaded.scene, &grid, &view).unwrap();
     (loaded, picture.covered_pixels() as f64 / (256.0 * 256.0))
 }

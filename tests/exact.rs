@@ -31,7 +31,7 @@ fn cloud(random: &mut Pcg64Mcg, count: usize, half: f32, radii: [f32; 2]) -> Vec
 
 fn render(scene: &mut Scene, view: &View, cells: u32) -> Picture {
     let grid = Grid::sort_scene(scene, &GridConfig::longest_side(cells)).unwrap();
-    let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
+    let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
     pipeline.render(scene, &grid, view).unwrap()
 }
 

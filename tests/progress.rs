@@ -242,7 +242,7 @@ fn front(scene: &Scene) -> View {
 fn a_wall_costs_what_is_seen_of_it() {
     let (scene, grid) = wall();
     let view = front(&scene);
-    let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
+    let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
     let mut steps = pipeline.progressive(&scene, &grid, &view, 1000).unwrap();
     let last = steps.by_ref().last().unwrap().unwrap();
     assert!(last.settled());
@@ -353,7 +353,7 @@ fn a_new_view_takes_over_within_one_budget() {
 fn the_cache_outlives_pictures_of_nothing() {
     let (scene, grid) = wall();
     let view = front(&scene);
-    let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
+    let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
     let seen = pipeline.render(&scene, &grid, &view).unwrap().visible_records();
     let mut steps = pipeline.progressive(&scene, &grid, &view, 100).unwrap();
     for turn in [0.01, 0.02, 0.0] {
@@ -392,7 +392,7 @@ fn a_budget_of_time_ends_too() {
     let (scene, grid) = wall();
     let view = front(&scene);
     for time in [Duration::ZERO, Duration::from_micros(300), Duration::from_secs(1000)] {
-        let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
+        let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
         let mut steps = pipeline.progressive(&scene, &grid, &view, Budget::Time(time)).unwrap();
         assert!(steps.by_ref().last().unwrap().unwrap().settled());
         assert_eq!(bits(&steps.picture().unwrap()), bits(&complete(&scene, &view)));

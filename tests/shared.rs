@@ -54,7 +54,7 @@ fn view(scene: &Scene) -> View {
 }
 
 fn render(scene: &Scene, grid: &Grid) -> Picture {
-    let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
+    let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
     pipeline.render(scene, grid, &view(scene)).unwrap()
 }
 

@@ -77,7 +77,7 @@ fn draw(
     step: &'static str,
     statistics: &mut Statistics,
 ) -> Result<Picture> {
-    let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
+    let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
     let budget = (scene.records.len() as u64 / 100).max(1 << 18);
     let (picture, progress) = statistics.time(step, || {
         let mut steps = pipeline.progressive(scene, grid, view, budget)?;

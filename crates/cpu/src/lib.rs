@@ -13,7 +13,7 @@ let grid = Grid::sort_scene(&mut scene, &GridConfig::default())?;
 let view = View::look_at(DVec3::Z * 9.0, DVec3::ZERO, DVec3::Y)?
     .with_size(11, 5)?
     .with_orthographic(2.5)?;
-let mut pipeline = Pipeline::new((FrustumCull, Depth), CpuRenderer::default());
+let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
 let picture = pipeline.render(&scene, &grid, &view)?;
 
 let rows: Vec<String> = picture

@@ -128,7 +128,7 @@ proptest! {
     fn the_depth_order_ascends(view in view(), bricks in prop::collection::vec(brick(), 0..50)) {
         let mut visible = Visible::all(&bricks, DVec3::ZERO, &view);
         let frame = Frame { view: &view, origin: DVec3::ZERO, bricks: &bricks };
-        Depth.apply(&frame, &mut visible);
+        Depth::default().apply(&frame, &mut visible);
         prop_assert_eq!(visible.bricks.len(), bricks.len());
         prop_assert!(visible.bricks.is_sorted_by(|a, b| (a.near(), a.index()) <= (b.near(), b.index())));
     }
