@@ -25,7 +25,7 @@ enum Any {
 
 impl<G: ?Sized> Stage<G> for Any {
     fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
-        Depth.apply(frame, visible);
+        Depth::default().apply(frame, visible);
         match self {
             Self::Nearest | Self::MostOpen => {}
             Self::Farthest => visible.bricks.reverse(),
@@ -378,7 +378,7 @@ fn the_cache_holds_nothing_that_a_stage_drops() {
         let keeps = |brick: &VisibleBrick| bricks[brick.index() as usize].bounds.max.y < 12.0;
         visible.bricks.retain(|brick| !is_lower.get() || keeps(brick));
     };
-    let mut pipeline = Pipeline::new((FrustumCull, Depth, floor), CpuRenderer::default());
+    let mut pipeline = Pipeline::new((FrustumCull, Depth::default(), floor), CpuRenderer::default());
     pipeline.render(&scene, &grid, &view).unwrap();
     is_lower.set(true);
     let picture = pipeline.render(&scene, &grid, &view).unwrap();

@@ -19,6 +19,10 @@ exp(-t) * (1 - exp(-tau)) * area
 Divided by the number of its records, this is what is gained for a unit of work. Taking the largest
 first fills the picture as fast as this guess allows. Bricks with few records come early even if they
 are partly hidden, and dense bricks come once, not all at once.
+
+While the picture is drawn, guesses are replaced by what is known. What was drawn hides what the depths
+of the picture say, so `area` becomes the [`gain`](VisibleBrick::gain) that the renderer's survey finds;
+and `t` sums only over the bricks that are still to be drawn, by one more sweep over the same graph.
 */
 
 use crate::{
@@ -28,6 +32,9 @@ use crate::{
 use puncta_core::{Brick, Frame, Stage, View, Visible, VisibleBrick};
 use puncta_grid::Grid;
 use rayon::prelude::*;
+
+/// What stands for no node.
+const NO_NODE: u32 = u32::MAX;
 
 /// How many bricks one thread takes at a time.
 const CHUNK: usize = 1 << 14;
@@ -39,7 +46,11 @@ const CHUNK: usize = 1 << 14;
 #[derive(Clone, Debug, Default)]
 pub struct Transmittance {
     graph: OcclusionGraph,
+    /// The node of each brick of the grid.
+    nodes: Vec<u32>,
     thicknesses: Vec<f32>,
+    /// The thicknesses of the nodes that are still to be drawn.
+    left: Vec<f32>,
     keys: Vec<u32>,
     radix: Radix,
 }
@@ -67,6 +78,13 @@ impl Transmittance {
 impl Stage<Grid> for Transmittance {
     fn apply(&mut self, frame: &Frame<'_, Grid>, visible: &mut Visible) {
         let (bricks, width) = (frame.bricks.bricks(), frame.bricks.cells().width());
+        self.nodes.clear();
+        self.nodes.resize(bricks.len(), NO_NODE);
+        for (node, brick) in (0..).zip(&visible.bricks) {
+            if let Some(place) = self.nodes.get_mut(brick.index() as usize) {
+                *place = node;
+            }
+        }
         let thickness = |visible: &VisibleBrick| {
             let brick = bricks.get(visible.index() as usize);
             brick.map_or(0.0, |brick| Self::thickness(brick, width))
@@ -84,6 +102,32 @@ impl Stage<Grid> for Transmittance {
         };
         list.zip(&self.thicknesses).zip(before).map(key).collect_into_vec(&mut self.keys);
         self.radix.sort(&mut visible.bricks, |node| self.keys[node]);
+    }
+
+    fn refine(&mut self, frame: &Frame<'_, Grid>, visible: &mut Visible) {
+        let bricks = frame.bricks.bricks();
+        let node = |brick: &VisibleBrick| {
+            self.nodes.get(brick.index() as usize).map_or(usize::MAX, |&node| node as usize)
+        };
+        self.left.clear();
+        self.left.resize(self.thicknesses.len(), 0.0);
+        for node in visible.bricks.iter().map(node) {
+            if let (Some(left), Some(own)) = (self.left.get_mut(node), self.thicknesses.get(node)) {
+                *left = *own;
+            }
+        }
+        let before = self.graph.least_sums(&self.left);
+        let key = |visible: &VisibleBrick| {
+            let records =
+                bricks.get(visible.index() as usize).map_or(1, |b| b.records.len().max(1));
+            let node = node(visible);
+            let value = |values: &[f32]| values.get(node).copied().unwrap_or(0.0);
+            let pixels = (-value(before)).exp() * opacity(value(&self.left)) * visible.gain();
+            descending((pixels / records as f32).max(0.0))
+        };
+        let list = visible.bricks.par_iter().with_min_len(CHUNK);
+        list.map(key).collect_into_vec(&mut self.keys);
+        self.radix.sort(&mut visible.bricks, |place| self.keys[place]);
     }
 }
 
