@@ -378,7 +378,8 @@ fn the_cache_holds_nothing_that_a_stage_drops() {
         let keeps = |brick: &VisibleBrick| bricks[brick.index() as usize].bounds.max.y < 12.0;
         visible.bricks.retain(|brick| !is_lower.get() || keeps(brick));
     };
-    let mut pipeline = Pipeline::new((FrustumCull, Depth::default(), floor), CpuRenderer::default());
+    let mut pipeline =
+        Pipeline::new((FrustumCull, Depth::default(), floor), CpuRenderer::default());
     pipeline.render(&scene, &grid, &view).unwrap();
     is_lower.set(true);
     let picture = pipeline.render(&scene, &grid, &view).unwrap();

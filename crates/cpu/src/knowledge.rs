@@ -10,7 +10,7 @@ use crate::{
     camera::Camera,
     drawing::Drawing,
 };
-use puncta_core::{Content, VisibleBrick};
+use puncta_core::Content;
 use rayon::prelude::*;
 
 /// The bound of what cannot be seen.
@@ -54,11 +54,11 @@ impl Knowledge {
         &self,
         content: &Content<'_, R>,
         camera: &Camera,
-        bricks: &[VisibleBrick],
+        bricks: &[u32],
     ) -> Vec<ScreenBound> {
         let bounder = Bounder::new(camera);
-        let find = |brick: &VisibleBrick| {
-            let index = brick.index() as usize;
+        let find = |&index: &u32| {
+            let index = index as usize;
             let known = self.bricks[index];
             if known.is_known() {
                 return known;
@@ -70,9 +70,9 @@ impl Knowledge {
     }
 
     /// Keeps the bounds of bricks.
-    pub(crate) fn keep(&mut self, bricks: &[VisibleBrick], bounds: &[ScreenBound]) {
-        for (brick, bound) in bricks.iter().zip(bounds) {
-            self.bricks[brick.index() as usize] = *bound;
+    pub(crate) fn keep(&mut self, bricks: &[u32], bounds: &[ScreenBound]) {
+        for (&brick, bound) in bricks.iter().zip(bounds) {
+            self.bricks[brick as usize] = *bound;
         }
     }
 

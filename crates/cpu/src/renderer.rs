@@ -89,8 +89,8 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         let camera = self.prepare(content, bricks)?;
         let ids = cache::visible(&self.last);
         let runs = cache::runs(&ids, content.bricks, bricks);
-        let visible: Vec<VisibleBrick> = runs.iter().map(|(brick, _)| *brick).collect();
-        let bounds = self.knowledge.bounds(content, &camera, &visible);
+        let holders: Vec<u32> = runs.iter().map(|(brick, _)| *brick).collect();
+        let bounds = self.knowledge.bounds(content, &camera, &holders);
         let pieces: Vec<Piece<'_>> = runs
             .iter()
             .zip(bounds)
@@ -114,8 +114,9 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         let drawing = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
         drawing.freshen();
         self.knowledge.hide_blocks(content, drawing);
-        let bounds = self.knowledge.bounds(content, &camera, left);
-        self.knowledge.keep(left, &bounds);
+        let indices = indices(left);
+        let bounds = self.knowledge.bounds(content, &camera, &indices);
+        self.knowledge.keep(&indices, &bounds);
         self.outlook = survey::survey(drawing, left, &bounds);
         Ok(Some(self.outlook.count(drawing)))
     }
@@ -170,7 +171,7 @@ impl CpuRenderer {
         camera: &Camera,
         bricks: &[VisibleBrick],
     ) -> Result<Amount, Error> {
-        let bounds = self.knowledge.bounds(content, camera, bricks);
+        let bounds = self.knowledge.bounds(content, camera, &indices(bricks));
         let members = |brick: &VisibleBrick| {
             Members::All(content.bricks[brick.index() as usize].records.clone())
         };
@@ -197,6 +198,10 @@ impl CpuRenderer {
         self.has_drawn |= drawn.bricks > 0;
         Ok(drawn)
     }
+}
+
+fn indices(bricks: &[VisibleBrick]) -> Vec<u32> {
+    bricks.iter().map(VisibleBrick::index).collect()
 }
 
 fn piece(bound: ScreenBound, members: Members<'_>) -> Piece<'_> {
