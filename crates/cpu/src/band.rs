@@ -61,6 +61,9 @@ pub(crate) fn nearest(depth: f64, radius: f64) -> f64 {
     depth - radius - 1e-6 * (depth.abs() + radius)
 }
 
+/// The largest side, in pixels, of a sphere that is looked at by tiles before it is set up.
+const GLANCE: usize = 64;
+
 /// A sphere in camera coordinates.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
@@ -109,6 +112,10 @@ impl Band<'_> {
     fn draw_sphere<R: Record>(&mut self, record: &R, id: u32) {
         let center = self.camera.place(record.position().as_dvec3());
         let radius = f64::from(record.radius());
+        let nearest = nearest(center.z, radius);
+        if self.is_hidden(center, radius, nearest) {
+            return;
+        }
         let Some(mut screen) = self.camera.screen_box(center, radius) else {
             return;
         };
@@ -119,17 +126,31 @@ impl Band<'_> {
             return;
         }
         let ends = |range: &RangeInclusive<i64>| [*range.start() as usize, *range.end() as usize];
-        let (columns, rows) = (ends(&screen.columns), ends(&screen.rows));
-        let nearest = nearest(center.z, radius);
-        if self.tiles.surely_hide(columns, rows, below(nearest)) {
-            return;
-        }
-        self.tiles.touch(columns, rows);
+        self.tiles.touch(ends(&screen.columns), ends(&screen.rows));
         let ball = Ball { center, radius, nearest, id };
         match Disc::new(self.camera, center, radius) {
             Some(disc) => self.draw_disc(&disc, &ball, &screen),
             None => self.draw_exact(&ball, &screen),
         }
+    }
+
+    /// Whether a sphere lies outside of this band or behind what is there, at a glance.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
+    fn is_hidden(&mut self, center: DVec3, radius: f64, nearest: f64) -> bool {
+        let Some([columns, rows]) = self.camera.outline(center, radius) else {
+            return false;
+        };
+        let last = [f64::from(self.camera.size()[0] - 1), self.last_row() as f64];
+        let first_row = self.first_row as f64;
+        // Written so that NaN is not hidden here.
+        if columns[1] < 0.0 || columns[0] > last[0] || rows[1] < first_row || rows[0] > last[1] {
+            return true;
+        }
+        let columns = [columns[0] as usize, columns[1].min(last[0]) as usize];
+        let rows = [rows[0].max(first_row) as usize, rows[1].min(last[1]) as usize];
+        let is_small = columns[1] - columns[0] <= GLANCE && rows[1] - rows[0] <= GLANCE;
+        is_small && self.tiles.hide_around(columns, rows, (below(nearest), self.depth))
     }
 
     /// Draws a small sphere, eight pixels at a time.

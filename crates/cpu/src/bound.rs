@@ -234,6 +234,12 @@ mod tests {
                 if screen.columns.is_empty() || screen.rows.is_empty() {
                     continue;
                 }
+                if let Some(around) = camera.outline(center, r) {
+                    for (around, range) in around.iter().zip([&screen.columns, &screen.rows]) {
+                        prop_assert!(around[0] <= *range.start() as f64 + 1e-9);
+                        prop_assert!(around[1] >= *range.end() as f64 - 1e-9);
+                    }
+                }
                 let inside = |[first, last]: [u16; 2], range: &std::ops::RangeInclusive<i64>| {
                     i64::from(first) <= *range.start() && *range.end() <= i64::from(last)
                 };

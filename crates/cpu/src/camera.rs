@@ -39,6 +39,9 @@ use std::ops::RangeInclusive;
 /// By how much screen boxes are grown: far more than rounding needs, far less than matters.
 const SLACK_PIXELS: f64 = 1e-3;
 
+/// The smallest view depth, in radii, of a ball that has an outline.
+const OUTLINE_RADII_MIN: f64 = 4.0;
+
 /// A view, ready to place spheres of a scene before it.
 #[derive(Clone, Debug)]
 pub struct Camera {
@@ -188,6 +191,30 @@ impl Camera {
         let columns = (self.middle.x + x.0 * self.per_pixel, self.middle.x + x.1 * self.per_pixel);
         let rows = (self.middle.y - y.1 * self.per_pixel, self.middle.y - y.0 * self.per_pixel);
         Some(ScreenBox { columns: pixels(columns, self.width), rows: pixels(rows, self.height) })
+    }
+
+    /// Columns and rows, first and last, around the pixels of [`Self::screen_box`]: a little too many,
+    /// but found quickly. `None` if they cannot be, which is rare.
+    ///
+    /// The bound is that of `bound.rs`, for one ball.
+    #[inline]
+    pub(crate) fn outline(&self, center: DVec3, radius: f64) -> Option<[[f64; 2]; 2]> {
+        let spread = |middle: f64, pixels: f64| [middle - pixels, middle + pixels];
+        if !self.is_perspective {
+            let pixels = radius * self.per_pixel + SLACK_PIXELS;
+            let at = self.pixel_of(center.truncate());
+            return Some([spread(at.x, pixels), spread(at.y, pixels)]);
+        }
+        if !(center.z > OUTLINE_RADII_MIN * radius && center.z - radius > self.near) {
+            return None;
+        }
+        let inverse = 1.0 / center.z;
+        let (s, p) = (center.truncate() * inverse, radius * inverse);
+        let stretch = 1.0 / (1.0 - OUTLINE_RADII_MIN.powi(-2));
+        // `s` is stretched as well, by `stretch` at most; so is what is around it.
+        let reach = (p * (1.0 + 0.5 * s * s)) * stretch + s.abs() * (p * p * stretch);
+        let (at, pixels) = (self.pixel_of(s), reach * self.per_pixel + SLACK_PIXELS);
+        Some([spread(at.x, pixels.x), spread(at.y, pixels.y)])
     }
 
     /// The slopes of the tangents to the part beyond the near plane of a circle that crosses it.

@@ -51,14 +51,25 @@ impl Tiles<'_> {
         }
     }
 
-    /// Whether all pixels of the tiles around these are known to be nearer than a depth.
+    /// Whether all pixels of the tiles around these, which lie in the rows at hand, are nearer than a
+    /// depth.
     #[inline]
-    pub(crate) fn surely_hide(&self, columns: [usize; 2], rows: [usize; 2], nearest: f32) -> bool {
+    pub(crate) fn hide_around(
+        &mut self,
+        columns: [usize; 2],
+        rows: [usize; 2],
+        (nearest, depth): (f32, &[f32]),
+    ) -> bool {
         let across = self.stride / SIDE;
-        let mut tiles = (rows[0] - self.first_row) / SIDE..=(rows[1] - self.first_row) / SIDE;
-        tiles.all(|y| {
-            let row = &self.deepest[y * across..][columns[0] / SIDE..=columns[1] / SIDE];
-            row.iter().all(|&deepest| deepest < nearest)
+        let (left, right) = (columns[0] / SIDE, columns[1] / SIDE);
+        ((rows[0] - self.first_row) / SIDE..=(rows[1] - self.first_row) / SIDE).all(|y| {
+            (left..=right).all(|x| {
+                let tile = y * across + x;
+                if self.deepest[tile] >= nearest && self.stale[tile] {
+                    self.freshen((x, y), depth);
+                }
+                self.deepest[tile] < nearest
+            })
         })
     }
 
