@@ -48,21 +48,25 @@ impl Block {
     /// How many bricks [`Block::of_runs`] takes together.
     pub const RUN: usize = 64;
 
-    /// Blocks of runs of bricks; good if bricks that are near in their order are near in space.
+    /// The block of a run of bricks, which starts with the brick `first`.
+    #[must_use]
+    pub fn of_run(first: u32, run: &[Brick]) -> Self {
+        let empty = Self { bricks: first..first, bounds: Aabb::EMPTY, radius_max: 0.0 };
+        run.iter().fold(empty, |mut block, brick| {
+            block.bricks.end = block.bricks.end.saturating_add(1);
+            block.bounds.add(brick.bounds.min);
+            block.bounds.add(brick.bounds.max);
+            block.radius_max = block.radius_max.max(brick.radius_max);
+            block
+        })
+    }
+
+    /// Blocks of [`Block::RUN`] bricks each; good if bricks that are near in their order are near in
+    /// space.
     #[must_use]
     pub fn of_runs(bricks: &[Brick]) -> Vec<Self> {
-        let block = |(start, run): (usize, &[Brick])| {
-            let first = u32::try_from(start * Self::RUN).unwrap_or(u32::MAX);
-            let empty = Self { bricks: first..first, bounds: Aabb::EMPTY, radius_max: 0.0 };
-            run.iter().fold(empty, |mut block, brick| {
-                block.bricks.end = block.bricks.end.saturating_add(1);
-                block.bounds.add(brick.bounds.min);
-                block.bounds.add(brick.bounds.max);
-                block.radius_max = block.radius_max.max(brick.radius_max);
-                block
-            })
-        };
-        bricks.chunks(Self::RUN).enumerate().map(block).collect()
+        let starts = (0_u32..).step_by(Self::RUN);
+        bricks.chunks(Self::RUN).zip(starts).map(|(run, first)| Self::of_run(first, run)).collect()
     }
 }
 

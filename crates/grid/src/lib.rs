@@ -208,7 +208,11 @@ impl Grid {
         (bricks, codes): (Vec<Brick>, Vec<u32>),
         colors: Option<Vec<[u8; 4]>>,
     ) -> Self {
-        let blocks = Block::of_runs(&bricks);
+        let block = |(run, bricks): (usize, &[Brick])| {
+            Block::of_run(u32::try_from(run * Block::RUN).unwrap_or(u32::MAX), bricks)
+        };
+        let blocks =
+            bricks.par_chunks(Block::RUN).enumerate().with_min_len(64).map(block).collect();
         Self { cells, layout, bricks, blocks, codes, colors }
     }
 
