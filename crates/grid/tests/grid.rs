@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use proptest::prelude::*;
-use puncta_core::{Record, Scalar, Scene, Sphere};
+use puncta_core::{Block, Bricks, Record, Scalar, Scene, Sphere};
 use puncta_grid::{Error, Fit, Grid, GridConfig, Order, Resolution};
 
 /// Coordinates of all sizes, many of them equal, and some at the edges of what `f32` can hold.
@@ -65,6 +65,7 @@ proptest! {
             grid => grid.unwrap(),
         };
         prop_assert_eq!(sorted_bits(&before), sorted_bits(&after));
+        prop_assert_eq!(grid.blocks(), Block::of_runs(grid.bricks()));
         let mut next = 0;
         for (index, brick) in (0_u32..).zip(grid.bricks()) {
             prop_assert_eq!(brick.records.start, next);
