@@ -49,6 +49,8 @@ pub struct Transmittance {
     /// The node of each brick of the grid.
     nodes: Vec<u32>,
     thicknesses: Vec<f32>,
+    /// The pixels for each record, if nothing lies before.
+    gains: Vec<f32>,
     /// The thicknesses of the nodes that are still to be drawn.
     left: Vec<f32>,
     keys: Vec<u32>,
@@ -85,22 +87,20 @@ impl Stage<Grid> for Transmittance {
                 *place = node;
             }
         }
-        let thickness = |visible: &VisibleBrick| {
-            let brick = bricks.get(visible.index() as usize);
-            brick.map_or(0.0, |brick| Self::thickness(brick, width))
+        let side = Side { width, view: frame.view };
+        let look = |visible: &VisibleBrick| {
+            let Some(brick) = bricks.get(visible.index() as usize) else { return (0.0, 0.0) };
+            let thickness = Self::thickness(brick, width);
+            let records = brick.records.len().max(1) as f32;
+            (thickness, opacity(thickness) * side.area(visible) / records)
         };
         let list = visible.bricks.par_iter().with_min_len(CHUNK);
-        list.clone().map(thickness).collect_into_vec(&mut self.thicknesses);
+        list.map(look).unzip_into_vecs(&mut self.thicknesses, &mut self.gains);
         self.graph.rebuild(frame, &visible.bricks);
         let before = self.graph.least_sums(&self.thicknesses);
-        let side = Side { width, view: frame.view };
-        let key = |((visible, &own), &before): ((&VisibleBrick, &f32), &f32)| {
-            let records =
-                bricks.get(visible.index() as usize).map_or(1, |b| b.records.len().max(1));
-            let pixels = (-before).exp() * opacity(own) * side.area(visible);
-            descending((pixels / records as f32).max(0.0))
-        };
-        list.zip(&self.thicknesses).zip(before).map(key).collect_into_vec(&mut self.keys);
+        let key = |(&gain, &before): (&f32, &f32)| descending((gain * (-before).exp()).max(0.0));
+        let gains = self.gains.par_iter().with_min_len(CHUNK);
+        gains.zip(before).map(key).collect_into_vec(&mut self.keys);
         self.radix.sort(&mut visible.bricks, |node| self.keys[node]);
     }
 
