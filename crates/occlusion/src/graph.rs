@@ -11,22 +11,25 @@ Decisions:
 
 * A ray is walked exactly, in whole numbers; where it passes through an edge between cells, the axes
   go in their order. Camera and cells are told in `camera.rs`, the walk in `walk.rs`.
-* Each step of a walk leads to a cell that is nearer to the camera's in the sum of the distances along
-  the axes (`front_to_back`). So the graph has no cycles, and one look at each brick in this order is
-  enough for levels and for exact minima: `sweep.rs`. The thesis does it with a queue, which is exact
-  for levels, but not for other weights.
+* Each step of a walk leads to a cell that is nearer to the camera's along one axis and not farther
+  along the others. So the graph has no cycles, and one look at each brick from front to back is enough
+  for levels and for exact minima: `sweep.rs`. The thesis does it with a queue, which is exact for
+  levels, but not for other weights.
 * Bricks that are not in play hide nothing: what a stage dropped is not drawn.
 */
 
+mod address;
 mod camera;
 mod occupancy;
 mod sweep;
 mod walk;
 
 use crate::graph::{
+    address::{Axes, NOWHERE},
     camera::Camera,
-    occupancy::{NOWHERE, Occupancy},
+    occupancy::Occupancy,
     sweep::Sweep,
+    walk::Rays,
 };
 use puncta_core::{Frame, VisibleBrick};
 use puncta_grid::Grid;
@@ -85,8 +88,7 @@ pub enum Edge {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct OcclusionGraph {
-    /// The cells of the nodes.
-    places: Vec<[u32; 3]>,
+    places: Vec<u64>,
     occupancy: Occupancy,
     edges: Vec<[u32; 3]>,
     sweep: Sweep,
@@ -106,18 +108,19 @@ impl OcclusionGraph {
     /// Bricks that the grid does not have are nodes that hide nothing and are never seen. Of nodes
     /// that are the same brick, one hides others.
     pub fn rebuild(&mut self, frame: &Frame<'_, Grid>, bricks: &[VisibleBrick]) {
-        let (grid, cells) = (frame.bricks, frame.bricks.cells());
-        let place = |brick: &VisibleBrick| grid.cell_of(brick.index()).unwrap_or(NOWHERE);
+        let (grid, dims) = (frame.bricks, frame.bricks.dims());
+        let camera = Camera::new(grid.cells(), frame.view, frame.origin);
+        let axes = Axes::new(dims);
+        let place = |brick: &VisibleBrick| {
+            grid.cell_of(brick.index()).map_or(NOWHERE, |cell| axes.address(cell))
+        };
         bricks.par_iter().with_min_len(CHUNK).map(place).collect_into_vec(&mut self.places);
-        let camera = Camera::new(cells, frame.view, frame.origin);
-        let (occupancy, places) = (&mut self.occupancy, &self.places);
-        match range(places) {
-            Some(range) => occupancy.rebuild(places, range, &camera),
-            None => *occupancy = Occupancy::default(),
-        }
-        let edges = |&place: &[u32; 3]| walk::edges(occupancy, &camera, place);
-        places.par_iter().with_min_len(CHUNK).map(edges).collect_into_vec(&mut self.edges);
-        self.sweep.sort(places, camera.nearest(cells.dims()));
+        let camera_at = camera.cell().and_then(|cell| axes.find(cell));
+        self.occupancy.rebuild(axes, &self.places, camera_at);
+        let rays = Rays::new(&self.occupancy, &camera, dims);
+        let edges = |&address: &u64| rays.edges(address);
+        self.places.par_iter().with_min_len(CHUNK).map(edges).collect_into_vec(&mut self.edges);
+        self.sweep.sort(&self.occupancy, camera.nearest(dims), bricks.len());
     }
 
     /// The number of nodes.
@@ -161,8 +164,6 @@ impl OcclusionGraph {
     }
 
     /// All nodes, each one after those that hide it.
-    ///
-    /// They ascend by the distance of their cell from that of the camera, along the axes.
     #[must_use]
     pub fn front_to_back(&self) -> &[u32] {
         self.sweep.order()
@@ -186,20 +187,4 @@ impl OcclusionGraph {
     pub fn shortest_sums(&mut self, weights: &[f32]) -> &[f32] {
         self.sweep.shortest_sums(&self.edges, weights)
     }
-}
-
-/// The least and the largest index of the places along each axis, if there are places.
-fn range(places: &[[u32; 3]]) -> Option<[[u32; 3]; 2]> {
-    let none = [[u32::MAX; 3], [0; 3]];
-    let join = |[min, max]: [[u32; 3]; 2], [low, high]: [[u32; 3]; 2]| {
-        let least = |axis: usize| low[axis].min(min[axis]);
-        let largest = |axis: usize| high[axis].max(max[axis]);
-        [std::array::from_fn(least), std::array::from_fn(largest)]
-    };
-    let of = |chunk: &[[u32; 3]]| {
-        let known = chunk.iter().filter(|&&place| place != NOWHERE);
-        known.fold(none, |range, &place| join(range, [place, place]))
-    };
-    let range = places.par_chunks(CHUNK).map(of).reduce(|| none, join);
-    (range[0][0] <= range[1][0]).then_some(range)
 }
