@@ -2,19 +2,19 @@
 The occlusion graph: which brick hides which, as far as one ray for each side can tell.
 
 This is section 3.2 of *Visibility-Driven Progressive Rendering of Large Particle Data*, the thesis
-whose methods puncta is built on. A ray goes from the center of each side of a brick's cell that faces
-the camera, one to three of them, towards the camera. The first cell on its way that holds another
-brick in play is an edge of the graph; a ray that meets none sees the camera. So the graph needs 12
-bytes for each brick.
+whose methods puncta is built on. A ray goes from the center of each side of a brick's cell that
+faces the camera, one to three of them, towards the camera. The first cell on its way that holds
+another brick in play is an edge of the graph; a ray that meets none sees the camera. So the graph
+needs 12 bytes for each brick.
 
 Decisions:
 
 * A ray is walked exactly, in whole numbers; where it passes through an edge between cells, the axes
   go in their order. Camera and cells are told in `camera.rs`, the walk in `walk.rs`.
 * Each step of a walk leads to a cell that is nearer to the camera's along one axis and not farther
-  along the others. So the graph has no cycles, and one look at each brick from front to back is enough
-  for levels and for exact minima: `sweep.rs`. The thesis does it with a queue, which is exact for
-  levels, but not for other weights.
+  along the others. So the graph has no cycles, and one look at each brick from front to back is
+  enough for levels and for exact minima: `sweep.rs`. The thesis does it with a queue, which is
+  exact for levels, but not for other weights.
 * Bricks that are not in play hide nothing: what a stage dropped is not drawn.
 */
 
@@ -137,8 +137,8 @@ impl OcclusionGraph {
 
     /// What is seen from the sides of a node, one for each axis.
     ///
-    /// A brick that holds the camera, or is straight above it along all axes, has no side that faces
-    /// it, and sees the camera with all of them.
+    /// A brick whose cell holds the camera has no side that faces it, and sees the camera with all of
+    /// them.
     ///
     /// # Panics
     ///
@@ -169,16 +169,17 @@ impl OcclusionGraph {
         self.sweep.order()
     }
 
-    /// For each node, the least number of edges that lead to the camera: 1 if it is directly visible.
+    /// For each node, the least number of edges that lead to the camera: 1 if it is directly
+    /// visible.
     pub fn levels(&mut self) -> &[u32] {
         self.sweep.levels(&self.edges)
     }
 
-    /// For each node, the least sum of the weights of the nodes on a path to the camera, without its
-    /// own weight: 0 if it is directly visible, infinity if it is never seen.
+    /// For each node, the least sum of the weights of the nodes on a path to the camera, without
+    /// its own weight: 0 if it is directly visible, infinity if it is never seen.
     ///
-    /// The sums are those of `f32`, added from the camera on. They are least if no weight is negative
-    /// or NaN; such count as 0, and so does a weight that is missing.
+    /// The sums are those of `f32`, added from the camera on. They are least if no weight is
+    /// negative or NaN; such count as 0, and so does a weight that is missing.
     pub fn least_sums(&mut self, weights: &[f32]) -> &[f32] {
         self.sweep.least_sums(&self.edges, weights)
     }

@@ -1,12 +1,12 @@
 /*!
 Sorting bricks in play by a key, then by depth, then by their index.
 
-Keys are numbers of 32 bits; an `f32` becomes one that is in the same order. What is sorted is a key and
-a place in the list, 8 bytes; at the end each brick is moved once. A radix sort from the lowest digit
-on keeps the order that was there, which is that of the index as a rule. Only the bits in which keys
-differ take part, and they are split into digits of equal length. Then each run of equal keys is sorted
-by depth in the same way, or by comparing if it is short: a level of the occlusion graph fits into the
-cache, and sums are hardly ever equal. Buffers are kept.
+Keys are numbers of 32 bits; an `f32` becomes one that is in the same order. What is sorted is a key
+and a place in the list, 8 bytes; at the end each brick is moved once. A radix sort from the lowest
+digit on keeps the order that was there, which is that of the index as a rule. Only the bits in
+which keys differ take part, and they are split into digits of equal length. Then each run of equal
+keys is sorted by depth in the same way, or by comparing if it is short: a level of the occlusion
+graph fits into the cache, and sums are hardly ever equal. Buffers are kept.
 */
 
 use puncta_core::VisibleBrick;

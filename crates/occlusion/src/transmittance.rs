@@ -2,8 +2,8 @@
 The order of what drawing a brick is likely to show, for what it costs.
 
 If balls were spread at random, a ray that crosses a cell would miss all of them with probability
-`exp(-tau)`, where `tau` is the sum of their cross sections over the area of a side. For balls of equal
-radius `r` in a cell of width `w`, whose volumes are `density` times that of the cell, it is
+`exp(-tau)`, where `tau` is the sum of their cross sections over the area of a side. For balls of
+equal radius `r` in a cell of width `w`, whose volumes are `density` times that of the cell, it is
 
 ```text
 tau = density * w * 3 / (4 r)
@@ -17,12 +17,13 @@ exp(-t) * (1 - exp(-tau)) * area
 ```
 
 Divided by the number of its records, this is what is gained for a unit of work. Taking the largest
-first fills the picture as fast as this guess allows. Bricks with few records come early even if they
-are partly hidden, and dense bricks come once, not all at once.
+first fills the picture as fast as this guess allows. Bricks with few records come early even if
+they are partly hidden, and dense bricks come once, not all at once.
 
-While the picture is drawn, guesses are replaced by what is known. What was drawn hides what the depths
-of the picture say, so `area` becomes the [`gain`](VisibleBrick::gain) that the renderer's survey finds;
-and `t` sums only over the bricks that are still to be drawn, by one more sweep over the same graph.
+While the picture is drawn, guesses are replaced by what is known. What was drawn hides what the
+depths of the picture say, so `area` becomes the [`gain`](VisibleBrick::gain) that the renderer's
+survey finds; and `t` sums only over the bricks that are still to be drawn, by one more sweep over
+the same graph.
 */
 
 use crate::{
@@ -65,8 +66,8 @@ impl Transmittance {
     }
 
     /// The optical thickness of a brick in a cell of this width: minus the logarithm of the
-    /// probability that a ray across the cell meets none of its records, which are taken to be spread
-    /// at random and of equal size. 0 if they have no size.
+    /// probability that a ray across the cell meets none of its records, which are taken to be
+    /// spread at random and of equal size. 0 if they have no size.
     #[must_use]
     pub fn thickness(brick: &Brick, cell_width: f32) -> f32 {
         if brick.radius_max > 0.0 {

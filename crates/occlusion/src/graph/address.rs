@@ -5,12 +5,12 @@ The address of a cell: a number in which each axis has bits of its own.
 [block z] [block y] [block x] [z: 3 bits] [y: 3 bits] [x: 3 bits]
 ```
 
-The upper part tells a block of 8 x 8 x 8 cells, the lower part the cell in it. A step along an axis is
-an addition that carries through the bits of this axis alone. Along each axis, addresses are in the
-order of cells.
+The upper part tells a block of 8 x 8 x 8 cells, the lower part the cell in it. A step along an axis
+is an addition that carries through the bits of this axis alone. Along each axis, addresses are in
+the order of cells.
 
-The block beyond the last one along an axis has a number, too, and so has the one before the first: it
-is the largest that fits into the bits. A ray that leaves the grid is at one of these.
+The block beyond the last one along an axis has a number, too, and so has the one before the first:
+it is the largest that fits into the bits. A ray that leaves the grid is at one of these.
 */
 
 /// The bits of an index that tell the cell within its block.
@@ -47,8 +47,8 @@ impl Axes {
         Self { blocks, masks, shifts }
     }
 
-    /// The numbers of blocks, row by row: of each row those that hold cells. Also the number that is
-    /// above all of them.
+    /// The numbers of blocks, row by row: of each row those that hold cells. Also the number that
+    /// is above all of them.
     pub(crate) fn rows(&self) -> (impl Iterator<Item = std::ops::Range<usize>>, usize) {
         let [x, y, z] = self.blocks.map(|count| count as usize);
         let [_, shift_y, shift_z] = self.shifts.map(|shift| shift - BLOCK_BITS);

@@ -2,18 +2,19 @@
 The camera among the cells of a grid, in whole numbers.
 
 In index space a cell is a unit cube: a position is `(position - corner) * scale`, so that its whole
-part is the index of its cell. The outermost cells of a grid may reach further than that to hold what
-lies far away. Here they are unit cubes as well, as if what they hold lay at the edge of the grid.
-That may put a brick of such a cell a little too early or too late into an order; no picture hangs on
-it.
+part is the index of its cell. The outermost cells of a grid may reach further than that to hold
+what lies far away. Here they are unit cubes as well, as if what they hold lay at the edge of the
+grid. That may put a brick of such a cell a little too early or too late into an order; no picture
+hangs on it.
 
 Coordinates are fixed point, in units of 2^-17 cell. The planes between cells and the centers of
-sides are even numbers of units. The camera is brought to an odd one: half of it, rounded down, times
-two, plus one. So it never lies on a plane between cells nor straight above the center of a side, and
-a camera that does counts to the upper cell. Whatever is decided by comparing has an answer then.
+sides are even numbers of units. The camera is brought to an odd one: half of it, rounded down,
+times two, plus one. So it never lies on a plane between cells nor straight above the center of a
+side, and a camera that does counts to the upper cell. Whatever is decided by comparing has an
+answer then.
 
-Parallel rays have a direction instead, in 2^-40 of its largest coordinate. A camera that is more than
-2^40 cells away, where neighboring rays differ by less than a unit, is taken for one.
+Parallel rays have a direction instead, in 2^-40 of its largest coordinate. A camera that is more
+than 2^40 cells away, where neighboring rays differ by less than a unit, is taken for one.
 */
 
 use glam::DVec3;
@@ -65,7 +66,8 @@ impl Camera {
         }
     }
 
-    /// The cell that is nearest to the camera. Along each axis, every ray gets nearer to it or stays.
+    /// The cell that is nearest to the camera. Along each axis, every ray gets nearer to it or
+    /// stays.
     pub(crate) fn nearest(&self, dims: [u32; 3]) -> [u32; 3] {
         std::array::from_fn(|axis| {
             let last = dims[axis].saturating_sub(1);
@@ -77,8 +79,8 @@ impl Camera {
         })
     }
 
-    /// The indices of cells from which the camera is seen upwards along an axis, and downwards: those
-    /// below the first number, and those above the second one.
+    /// The indices of cells from which the camera is seen upwards along an axis, and downwards:
+    /// those below the first number, and those above the second one.
     pub(crate) fn bounds(&self, axis: usize) -> [i64; 2] {
         match self {
             Self::At(place) => [place[axis] >> FRACTION; 2],

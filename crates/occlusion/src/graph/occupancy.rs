@@ -3,15 +3,15 @@ Which cells hold a brick in play, and which brick it is.
 
 A ray asks this at every step, so the answer must be short to get; and a grid has up to 2^30 cells,
 most of them empty. Cells come in blocks of 8 x 8 x 8. A table tells the block that a cell is in; a
-block is 512 bits, one for each cell. Bricks are numbered by their bits: a number is the count of bits
-before, of which all but the last 64 are counted beforehand. The table has up to four entries of 4 bytes
-for 512 cells, because an axis may waste half of the numbers that its bits have.
+block is 512 bits, one for each cell. Bricks are numbered by their bits: a number is the count of
+bits before, of which all but the last 64 are counted beforehand. The table has up to four entries
+of 4 bytes for 512 cells, because an axis may waste half of the numbers that its bits have.
 
 What ends a ray is marked as well, so that it takes one test only. The cell of the camera has a bit.
 Around the grid lie blocks that have all bits.
 
-The buffers are kept from frame to frame: fresh memory costs more than what is done here. Of the table
-only what was in use is emptied.
+The buffers are kept from frame to frame: fresh memory costs more than what is done here. Of the
+table only what was in use is emptied.
 */
 
 use crate::graph::{
@@ -160,7 +160,8 @@ impl Occupancy {
         (OUTSIDE as usize + 1..).zip(self.entries.iter().map(first))
     }
 
-    /// The bricks of a block, such that each comes after what lies between it and the cell `nearest`.
+    /// The bricks of a block, such that each comes after what lies between it and the cell
+    /// `nearest`.
     pub(crate) fn each_brick(&self, block: usize, nearest: [u32; 3], mut each: impl FnMut(u32)) {
         let first = self.axes.first_cell(self.entries[block - OUTSIDE as usize - 1]);
         let [x, y, z] = [0, 1, 2].map(|axis| nearest[axis].saturating_sub(first[axis]).min(8));

@@ -1,14 +1,14 @@
 /*!
 An order of nodes from front to back; levels and sums of weights, in one look at each node.
 
-Each step of a ray leads to a cell that is nearer to the camera along one axis and not farther along the
-others. So nodes can be ordered such that each finds the values of all that hides it, and a value is an
-exact minimum, as Dijkstra's algorithm would find it: adding in `f32` keeps the order of numbers,
-rounded or not.
+Each step of a ray leads to a cell that is nearer to the camera along one axis and not farther along
+the others. So nodes can be ordered such that each finds the values of all that hides it, and a
+value is an exact minimum, as Dijkstra's algorithm would find it: adding in `f32` keeps the order of
+numbers, rounded or not.
 
-The order goes block by block, so that what is looked at next to each other is so in memory: blocks by
-the sum of their distances from that of the camera, and the cells of a block plane by plane, row by row
-and one by one, each of them first upwards from the camera and then downwards.
+The order goes block by block, so that what is looked at next to each other is so in memory: blocks
+by the sum of their distances from that of the camera, and the cells of a block plane by plane, row
+by row and one by one, each of them first upwards from the camera and then downwards.
 */
 
 use crate::graph::{AWAY, CAMERA, occupancy::Occupancy};
@@ -81,8 +81,8 @@ impl Sweep {
         self.sums(edges, weights, |levels, brick, node| levels[brick] < levels[node])
     }
 
-    /// The least of the sums that is handed on to a node by what hides it, where `counts` is true of
-    /// the levels, what hides it, and the node.
+    /// The least of the sums that is handed on to a node by what hides it, where `counts` is true
+    /// of the levels, what hides it, and the node.
     #[inline(always)]
     fn sums(
         &mut self,

@@ -4,28 +4,27 @@ The walk of a ray over cells, from the center of a side of a brick towards the c
 This is the walk of Amanatides and Woo (*A Fast Voxel Traversal Algorithm for Ray Tracing*, 1987) in
 whole numbers, arranged so that no step hangs on a branch.
 
-Let `d` be the way to the camera, without signs, and `a` the distance from the start to the next plane
-between cells along each axis, in half cells. The ray crosses the plane of an axis `i` at `a_i / d_i`
-of the way. Which of two planes comes first is told by the sign of
+Let `d` be the way to the camera, without signs, and `a` the distance from the start to the next
+plane between cells along each axis, in half cells. The ray crosses the plane of an axis `i` at
+`a_i / d_i` of the way. Which of two planes comes first is told by the sign of
 
 ```text
 E_ij = a_i d_j - a_j d_i
 ```
 
-If both are crossed at once, the axis of the lower index is first. So if `i < j`, the plane of `i` is
-first if `E_ij <= 0`, that is, if `E_ij - 1` is negative. After a step along `i`, `a_i` is larger by
-two half cells, and `E_ij` by `2 d_j`.
+If both are crossed at once, the axis of the lower index is first. So if `i < j`, the plane of `i`
+is first if `E_ij <= 0`, that is, if `E_ij - 1` is negative. After a step along `i`, `a_i` is larger
+by two half cells, and `E_ij` by `2 d_j`.
 
 Let `w` be the axis along which the way is longest. Between two of its planes, a ray crosses at most
 one plane of each other axis. So the walk goes from plane to plane of `w`. For each other axis `u`,
-the sign of `E_uw` tells whether one of its planes is in between; if both have one, `E_uv` tells which
-is first. Signs become masks, masks become steps, and the three cells are tested together.
+the sign of `E_uw` tells whether one of its planes is in between; if both have one, `E_uv` tells
+which is first. Signs become masks, masks become steps, and the three cells are tested together.
 
-No number is too large: the planes next to each other in the order of the walk are never further apart
-than two half cells along one axis, so that `|E_ij| <= 2 d_i + 2 d_j + 1`, where `d < 2^59`.
+No number is too large: the planes next to each other in the order of the walk are never further
+apart than two half cells along one axis, so that `|E_ij| <= 2 d_i + 2 d_j + 1`, where `d < 2^59`.
 
-A ray always ends: it enters the cell of the camera or leaves the box of the bricks in play, and both
-are marked.
+A ray always ends: it enters the cell of the camera or leaves the grid, and both are marked.
 */
 
 use crate::graph::{
@@ -40,7 +39,8 @@ use crate::graph::{
 pub(crate) struct Rays<'a> {
     occupancy: &'a Occupancy,
     camera: &'a Camera,
-    /// For each axis, the parts of addresses below the first and above the second one see the camera.
+    /// For each axis, the parts of addresses below the first and above the second one see the
+    /// camera.
     bounds: [[i64; 2]; 3],
 }
 
