@@ -11,13 +11,13 @@ accum(b) = min { accum(o) + density(o) }             over all bricks o that hide
 ```
 
 [`Density`] has exactly these minima. The thesis finds them with the queue of its algorithm 3.1,
-"using the same breadth-first traversal algorithm as before", where "for each node, the level changes
-only once", and so "along shortest paths to the camera node". A queue reaches nodes in the order of
-their levels. So a path of more edges comes too late, even if it is less dense, and what a node has
-handed on is not changed any more. [`DensityFifo`] is this order: the minimum over the paths of the
-fewest edges. Where a queue would depend on the order of its nodes, which is where a brick is hidden by
-one of its own level, that one is left out. So the order is one for any order of bricks. It is here to
-be compared with.
+"using the same breadth-first traversal algorithm as before", where "for each node, the level
+changes only once", and so "along shortest paths to the camera node". A queue reaches nodes in the
+order of their levels. So a path of more edges comes too late, even if it is less dense, and what a
+node has handed on is not changed any more. [`DensityFifo`] is this order: the minimum over the
+paths of the fewest edges. Where a queue would depend on the order of its nodes, which is where a
+brick is hidden by one of its own level, that one is left out. So the order is one for any order of
+bricks. It is here to be compared with.
 */
 
 use crate::{
@@ -39,8 +39,8 @@ pub struct Density {
     order: Accumulated,
 }
 
-/// Orders bricks as [`Density`] does, but looks at the paths of the fewest edges only, as the thesis
-/// does.
+/// Orders bricks as [`Density`] does, but looks at the paths of the fewest edges only, as the
+/// thesis does.
 #[derive(Clone, Debug, Default)]
 pub struct DensityFifo {
     order: Accumulated,

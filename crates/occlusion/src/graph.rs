@@ -2,31 +2,34 @@
 The occlusion graph: which brick hides which, as far as one ray for each side can tell.
 
 This is section 3.2 of *Visibility-Driven Progressive Rendering of Large Particle Data*, the thesis
-whose methods puncta is built on. A ray goes from the center of each side of a brick's cell that faces
-the camera, one to three of them, towards the camera. The first cell on its way that holds another
-brick in play is an edge of the graph; a ray that meets none sees the camera. So the graph needs 12
-bytes for each brick.
+whose methods puncta is built on. A ray goes from the center of each side of a brick's cell that
+faces the camera, one to three of them, towards the camera. The first cell on its way that holds
+another brick in play is an edge of the graph; a ray that meets none sees the camera. So the graph
+needs 12 bytes for each brick.
 
 Decisions:
 
 * A ray is walked exactly, in whole numbers; where it passes through an edge between cells, the axes
   go in their order. Camera and cells are told in `camera.rs`, the walk in `walk.rs`.
-* Each step of a walk leads to a cell that is nearer to the camera's in the sum of the distances along
-  the axes (`front_to_back`). So the graph has no cycles, and one look at each brick in this order is
-  enough for levels and for exact minima: `sweep.rs`. The thesis does it with a queue, which is exact
-  for levels, but not for other weights.
+* Each step of a walk leads to a cell that is nearer to the camera's along one axis and not farther
+  along the others. So the graph has no cycles, and one look at each brick from front to back is
+  enough for levels and for exact minima: `sweep.rs`. The thesis does it with a queue, which is
+  exact for levels, but not for other weights.
 * Bricks that are not in play hide nothing: what a stage dropped is not drawn.
 */
 
+mod address;
 mod camera;
 mod occupancy;
 mod sweep;
 mod walk;
 
 use crate::graph::{
+    address::{Axes, NOWHERE},
     camera::Camera,
-    occupancy::{NOWHERE, Occupancy},
+    occupancy::Occupancy,
     sweep::Sweep,
+    walk::Rays,
 };
 use puncta_core::{Frame, VisibleBrick};
 use puncta_grid::Grid;
@@ -85,8 +88,7 @@ pub enum Edge {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct OcclusionGraph {
-    /// The cells of the nodes.
-    places: Vec<[u32; 3]>,
+    places: Vec<u64>,
     occupancy: Occupancy,
     edges: Vec<[u32; 3]>,
     sweep: Sweep,
@@ -106,18 +108,19 @@ impl OcclusionGraph {
     /// Bricks that the grid does not have are nodes that hide nothing and are never seen. Of nodes
     /// that are the same brick, one hides others.
     pub fn rebuild(&mut self, frame: &Frame<'_, Grid>, bricks: &[VisibleBrick]) {
-        let (grid, cells) = (frame.bricks, frame.bricks.cells());
-        let place = |brick: &VisibleBrick| grid.cell_of(brick.index()).unwrap_or(NOWHERE);
+        let (grid, dims) = (frame.bricks, frame.bricks.dims());
+        let camera = Camera::new(grid.cells(), frame.view, frame.origin);
+        let axes = Axes::new(dims);
+        let place = |brick: &VisibleBrick| {
+            grid.cell_of(brick.index()).map_or(NOWHERE, |cell| axes.address(cell))
+        };
         bricks.par_iter().with_min_len(CHUNK).map(place).collect_into_vec(&mut self.places);
-        let camera = Camera::new(cells, frame.view, frame.origin);
-        let (occupancy, places) = (&mut self.occupancy, &self.places);
-        match range(places) {
-            Some(range) => occupancy.rebuild(places, range, &camera),
-            None => *occupancy = Occupancy::default(),
-        }
-        let edges = |&place: &[u32; 3]| walk::edges(occupancy, &camera, place);
-        places.par_iter().with_min_len(CHUNK).map(edges).collect_into_vec(&mut self.edges);
-        self.sweep.sort(places, camera.nearest(cells.dims()));
+        let camera_at = camera.cell().and_then(|cell| axes.find(cell));
+        self.occupancy.rebuild(axes, &self.places, camera_at);
+        let rays = Rays::new(&self.occupancy, &camera, dims);
+        let edges = |&address: &u64| rays.edges(address);
+        self.places.par_iter().with_min_len(CHUNK).map(edges).collect_into_vec(&mut self.edges);
+        self.sweep.sort(&self.occupancy, camera.nearest(dims), bricks.len());
     }
 
     /// The number of nodes.
@@ -134,8 +137,8 @@ impl OcclusionGraph {
 
     /// What is seen from the sides of a node, one for each axis.
     ///
-    /// A brick that holds the camera, or is straight above it along all axes, has no side that faces
-    /// it, and sees the camera with all of them.
+    /// A brick whose cell holds the camera has no side that faces it, and sees the camera with all of
+    /// them.
     ///
     /// # Panics
     ///
@@ -161,23 +164,22 @@ impl OcclusionGraph {
     }
 
     /// All nodes, each one after those that hide it.
-    ///
-    /// They ascend by the distance of their cell from that of the camera, along the axes.
     #[must_use]
     pub fn front_to_back(&self) -> &[u32] {
         self.sweep.order()
     }
 
-    /// For each node, the least number of edges that lead to the camera: 1 if it is directly visible.
+    /// For each node, the least number of edges that lead to the camera: 1 if it is directly
+    /// visible.
     pub fn levels(&mut self) -> &[u32] {
         self.sweep.levels(&self.edges)
     }
 
-    /// For each node, the least sum of the weights of the nodes on a path to the camera, without its
-    /// own weight: 0 if it is directly visible, infinity if it is never seen.
+    /// For each node, the least sum of the weights of the nodes on a path to the camera, without
+    /// its own weight: 0 if it is directly visible, infinity if it is never seen.
     ///
-    /// The sums are those of `f32`, added from the camera on. They are least if no weight is negative
-    /// or NaN; such count as 0, and so does a weight that is missing.
+    /// The sums are those of `f32`, added from the camera on. They are least if no weight is
+    /// negative or NaN; such count as 0, and so does a weight that is missing.
     pub fn least_sums(&mut self, weights: &[f32]) -> &[f32] {
         self.sweep.least_sums(&self.edges, weights)
     }
@@ -186,20 +188,4 @@ impl OcclusionGraph {
     pub fn shortest_sums(&mut self, weights: &[f32]) -> &[f32] {
         self.sweep.shortest_sums(&self.edges, weights)
     }
-}
-
-/// The least and the largest index of the places along each axis, if there are places.
-fn range(places: &[[u32; 3]]) -> Option<[[u32; 3]; 2]> {
-    let none = [[u32::MAX; 3], [0; 3]];
-    let join = |[min, max]: [[u32; 3]; 2], [low, high]: [[u32; 3]; 2]| {
-        let least = |axis: usize| low[axis].min(min[axis]);
-        let largest = |axis: usize| high[axis].max(max[axis]);
-        [std::array::from_fn(least), std::array::from_fn(largest)]
-    };
-    let of = |chunk: &[[u32; 3]]| {
-        let known = chunk.iter().filter(|&&place| place != NOWHERE);
-        known.fold(none, |range, &place| join(range, [place, place]))
-    };
-    let range = places.par_chunks(CHUNK).map(of).reduce(|| none, join);
-    (range[0][0] <= range[1][0]).then_some(range)
 }

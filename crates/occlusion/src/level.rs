@@ -6,8 +6,8 @@ use puncta_grid::Grid;
 
 /// Orders bricks by how many others hide them, one behind the other: directly visible ones first.
 ///
-/// This is the level of section 3.2.2 of the thesis: one more than the least level of what hides the
-/// brick. Bricks of a level go by their depth, then by their index.
+/// This is the level of section 3.2.2 of the thesis: one more than the least level of what hides
+/// the brick. Bricks of a level go by their depth, then by their index.
 #[derive(Clone, Debug, Default)]
 pub struct Level {
     graph: OcclusionGraph,

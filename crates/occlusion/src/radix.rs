@@ -1,13 +1,12 @@
 /*!
 Sorting bricks in play by a key, then by depth, then by their index.
 
-Keys are numbers of 32 bits; an `f32` becomes one that is in the same order. A radix sort from the
-lowest digit on keeps the order that was there. So bricks are sorted by the last of the three first:
-by index, which they are as a rule, then by depth, and then by the key. What is sorted is a key and a
-place in the list, 8 bytes; at the end each brick is moved once. Only the bits in which keys differ
-take part, and they are split into digits of equal length.
-
-Against sorting by comparison, 200,000 bricks take a tenth of the time. Buffers are kept.
+Keys are numbers of 32 bits; an `f32` becomes one that is in the same order. What is sorted is a key
+and a place in the list, 8 bytes; at the end each brick is moved once. A radix sort from the lowest
+digit on keeps the order that was there, which is that of the index as a rule. Only the bits in
+which keys differ take part, and they are split into digits of equal length. Then each run of equal
+keys is sorted by depth in the same way, or by comparing if it is short: a level of the occlusion
+graph fits into the cache, and sums are hardly ever equal. Buffers are kept.
 */
 
 use puncta_core::VisibleBrick;
@@ -15,72 +14,95 @@ use puncta_core::VisibleBrick;
 /// The most bits of a digit: its counts should stay in the first cache.
 const DIGIT_BITS: u32 = 11;
 
+/// Lists shorter than that have digits of 8 bits: less is to be counted then.
+const MIDDLING: usize = 1 << 12;
+
+/// Runs shorter than that are sorted by comparing.
+const SHORT: usize = 128;
+
+/// A key, and which brick of the list it belongs to.
+type Pair = (u32, u32);
+
 /// Sorts bricks, and keeps the memory for it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Radix {
-    /// Keys, and which brick of the list they belong to.
-    pairs: Vec<(u32, u32)>,
-    spare: Vec<(u32, u32)>,
+    pairs: Vec<Pair>,
+    spare: Vec<Pair>,
     sorted: Vec<VisibleBrick>,
-    counts: Vec<u32>,
 }
 
 impl Radix {
     /// Sorts by the key of a brick, given its place in the list; then by near depth and index.
     pub(crate) fn sort(&mut self, bricks: &mut Vec<VisibleBrick>, key: impl Fn(usize) -> u32) {
+        self.spare.resize(bricks.len(), (0, 0));
         self.pairs.clear();
-        self.pairs
-            .extend((0_u32..).zip(bricks.iter()).map(|(place, brick)| (brick.index(), place)));
-        if !bricks.is_sorted_by_key(VisibleBrick::index) {
-            self.by_keys();
+        if bricks.is_sorted_by_key(VisibleBrick::index) {
+            self.pairs.extend((0_u32..).zip(0..bricks.len()).map(|(place, i)| (key(i), place)));
+        } else {
+            self.pairs.extend((0_u32..).zip(&*bricks).map(|(place, brick)| (brick.index(), place)));
+            by_keys(&mut self.pairs, &mut self.spare);
+            rekey(&mut self.pairs, key);
         }
-        self.rekey(|place| ascending(bricks[place].near()));
-        self.by_keys();
-        self.rekey(key);
-        self.by_keys();
+        by_keys(&mut self.pairs, &mut self.spare);
+        let (mut pairs, mut spare) = (self.pairs.as_mut_slice(), self.spare.as_mut_slice());
+        while let Some(&(key, _)) = pairs.first() {
+            let end = pairs.iter().position(|&(other, _)| other != key).unwrap_or(pairs.len());
+            let (run, rest) = pairs.split_at_mut(end);
+            if run.len() > 1 {
+                rekey(run, |place| ascending(bricks[place].near()));
+                by_keys(run, &mut spare[..end]);
+            }
+            (pairs, spare) = (rest, &mut spare[end..]);
+        }
         self.sorted.clear();
         self.sorted.extend(self.pairs.iter().map(|&(_, place)| bricks[place as usize]));
         std::mem::swap(bricks, &mut self.sorted);
     }
+}
 
-    /// Gives other keys to the bricks, in the order that they have.
-    fn rekey(&mut self, key: impl Fn(usize) -> u32) {
-        for (of_brick, place) in &mut self.pairs {
-            *of_brick = key(*place as usize);
-        }
+/// Gives other keys to pairs.
+fn rekey(pairs: &mut [Pair], key: impl Fn(usize) -> u32) {
+    for (of_brick, place) in pairs {
+        *of_brick = key(*place as usize);
     }
+}
 
-    /// Sorts pairs by their keys; equal ones stay in their order.
-    fn by_keys(&mut self) {
-        let range = |(min, max): (u32, u32), &(key, _): &(u32, u32)| (min.min(key), max.max(key));
-        let (min, max) = self.pairs.iter().fold((u32::MAX, 0), range);
-        let bits = u32::BITS - max.saturating_sub(min).leading_zeros();
-        let digits = bits.div_ceil(DIGIT_BITS);
-        for digit in 0..digits {
-            let width = bits.div_ceil(digits);
-            self.by_digit(min, width * digit, (1 << width) - 1);
-        }
+/// Sorts pairs by their keys; equal ones stay in their order.
+fn by_keys(pairs: &mut [Pair], spare: &mut [Pair]) {
+    if pairs.len() < SHORT {
+        return pairs.sort_by_key(|&(key, _)| key);
     }
+    let range = |(min, max): (u32, u32), &(key, _): &Pair| (min.min(key), max.max(key));
+    let (min, max) = pairs.iter().fold((u32::MAX, 0), range);
+    let bits = u32::BITS - (max - min).leading_zeros();
+    let digits = bits.div_ceil(if pairs.len() < MIDDLING { 8 } else { DIGIT_BITS });
+    let (mut from, mut to) = (&mut *pairs, spare);
+    for digit in 0..digits {
+        let width = bits.div_ceil(digits);
+        by_digit(from, to, width, |key| (key - min) >> (width * digit));
+        std::mem::swap(&mut from, &mut to);
+    }
+    if digits % 2 == 1 {
+        to.copy_from_slice(from);
+    }
+}
 
-    /// Sorts pairs by some bits of their keys above the least one.
-    fn by_digit(&mut self, min: u32, shift: u32, mask: u32) {
-        let digit = |key: u32| ((key - min) >> shift & mask) as usize;
-        self.counts.clear();
-        self.counts.resize(mask as usize + 1, 0);
-        for &(key, _) in &self.pairs {
-            self.counts[digit(key)] += 1;
-        }
-        let mut start = 0;
-        for count in &mut self.counts {
-            start += std::mem::replace(count, start);
-        }
-        self.spare.resize(self.pairs.len(), (0, 0));
-        for &pair in &self.pairs {
-            let next = &mut self.counts[digit(pair.0)];
-            self.spare[*next as usize] = pair;
-            *next += 1;
-        }
-        std::mem::swap(&mut self.pairs, &mut self.spare);
+/// Sorts pairs by the lowest bits of what `digit` makes of their keys, from one place to another.
+fn by_digit(from: &[Pair], to: &mut [Pair], bits: u32, digit: impl Fn(u32) -> u32) {
+    let mut counts = [0_u32; 1 << DIGIT_BITS];
+    let counts = &mut counts[..1 << bits];
+    let digit = |key: u32| (digit(key) & ((1 << bits) - 1)) as usize;
+    for &(key, _) in from {
+        counts[digit(key)] += 1;
+    }
+    let mut start = 0;
+    for count in &mut *counts {
+        start += std::mem::replace(count, start);
+    }
+    for &pair in from {
+        let next = &mut counts[digit(pair.0)];
+        to[*next as usize] = pair;
+        *next += 1;
     }
 }
 

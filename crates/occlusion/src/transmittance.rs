@@ -2,8 +2,8 @@
 The order of what drawing a brick is likely to show, for what it costs.
 
 If balls were spread at random, a ray that crosses a cell would miss all of them with probability
-`exp(-tau)`, where `tau` is the sum of their cross sections over the area of a side. For balls of equal
-radius `r` in a cell of width `w`, whose volumes are `density` times that of the cell, it is
+`exp(-tau)`, where `tau` is the sum of their cross sections over the area of a side. For balls of
+equal radius `r` in a cell of width `w`, whose volumes are `density` times that of the cell, it is
 
 ```text
 tau = density * w * 3 / (4 r)
@@ -17,12 +17,13 @@ exp(-t) * (1 - exp(-tau)) * area
 ```
 
 Divided by the number of its records, this is what is gained for a unit of work. Taking the largest
-first fills the picture as fast as this guess allows. Bricks with few records come early even if they
-are partly hidden, and dense bricks come once, not all at once.
+first fills the picture as fast as this guess allows. Bricks with few records come early even if
+they are partly hidden, and dense bricks come once, not all at once.
 
-While the picture is drawn, guesses are replaced by what is known. What was drawn hides what the depths
-of the picture say, so `area` becomes the [`gain`](VisibleBrick::gain) that the renderer's survey finds;
-and `t` sums only over the bricks that are still to be drawn, by one more sweep over the same graph.
+While the picture is drawn, guesses are replaced by what is known. What was drawn hides what the
+depths of the picture say, so `area` becomes the [`gain`](VisibleBrick::gain) that the renderer's
+survey finds; and `t` sums only over the bricks that are still to be drawn, by one more sweep over
+the same graph.
 */
 
 use crate::{
@@ -49,6 +50,8 @@ pub struct Transmittance {
     /// The node of each brick of the grid.
     nodes: Vec<u32>,
     thicknesses: Vec<f32>,
+    /// The pixels for each record, if nothing lies before.
+    gains: Vec<f32>,
     /// The thicknesses of the nodes that are still to be drawn.
     left: Vec<f32>,
     keys: Vec<u32>,
@@ -63,8 +66,8 @@ impl Transmittance {
     }
 
     /// The optical thickness of a brick in a cell of this width: minus the logarithm of the
-    /// probability that a ray across the cell meets none of its records, which are taken to be spread
-    /// at random and of equal size. 0 if they have no size.
+    /// probability that a ray across the cell meets none of its records, which are taken to be
+    /// spread at random and of equal size. 0 if they have no size.
     #[must_use]
     pub fn thickness(brick: &Brick, cell_width: f32) -> f32 {
         if brick.radius_max > 0.0 {
@@ -85,22 +88,20 @@ impl Stage<Grid> for Transmittance {
                 *place = node;
             }
         }
-        let thickness = |visible: &VisibleBrick| {
-            let brick = bricks.get(visible.index() as usize);
-            brick.map_or(0.0, |brick| Self::thickness(brick, width))
+        let side = Side { width, view: frame.view };
+        let look = |visible: &VisibleBrick| {
+            let Some(brick) = bricks.get(visible.index() as usize) else { return (0.0, 0.0) };
+            let thickness = Self::thickness(brick, width);
+            let records = brick.records.len().max(1) as f32;
+            (thickness, opacity(thickness) * side.area(visible) / records)
         };
         let list = visible.bricks.par_iter().with_min_len(CHUNK);
-        list.clone().map(thickness).collect_into_vec(&mut self.thicknesses);
+        list.map(look).unzip_into_vecs(&mut self.thicknesses, &mut self.gains);
         self.graph.rebuild(frame, &visible.bricks);
         let before = self.graph.least_sums(&self.thicknesses);
-        let side = Side { width, view: frame.view };
-        let key = |((visible, &own), &before): ((&VisibleBrick, &f32), &f32)| {
-            let records =
-                bricks.get(visible.index() as usize).map_or(1, |b| b.records.len().max(1));
-            let pixels = (-before).exp() * opacity(own) * side.area(visible);
-            descending((pixels / records as f32).max(0.0))
-        };
-        list.zip(&self.thicknesses).zip(before).map(key).collect_into_vec(&mut self.keys);
+        let key = |(&gain, &before): (&f32, &f32)| descending((gain * (-before).exp()).max(0.0));
+        let gains = self.gains.par_iter().with_min_len(CHUNK);
+        gains.zip(before).map(key).collect_into_vec(&mut self.keys);
         self.radix.sort(&mut visible.bricks, |node| self.keys[node]);
     }
 

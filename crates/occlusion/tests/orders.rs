@@ -100,7 +100,8 @@ fn brick_records(world: &World, node: usize) -> f64 {
     brick(world, node).records.len() as f64
 }
 
-/// The queue sees `last` behind the dense brick, and so draws it after what is behind a middling one.
+/// The queue sees `last` behind the dense brick, and so draws it after what is behind a middling
+/// one.
 #[test]
 fn the_queue_takes_the_dense_path() {
     let (world, [_, last, also]) = twin::way_around();

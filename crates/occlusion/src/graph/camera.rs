@@ -2,18 +2,19 @@
 The camera among the cells of a grid, in whole numbers.
 
 In index space a cell is a unit cube: a position is `(position - corner) * scale`, so that its whole
-part is the index of its cell. The outermost cells of a grid may reach further than that to hold what
-lies far away. Here they are unit cubes as well, as if what they hold lay at the edge of the grid.
-That may put a brick of such a cell a little too early or too late into an order; no picture hangs on
-it.
+part is the index of its cell. The outermost cells of a grid may reach further than that to hold
+what lies far away. Here they are unit cubes as well, as if what they hold lay at the edge of the
+grid. That may put a brick of such a cell a little too early or too late into an order; no picture
+hangs on it.
 
 Coordinates are fixed point, in units of 2^-17 cell. The planes between cells and the centers of
-sides are even numbers of units. The camera is brought to an odd one: half of it, rounded down, times
-two, plus one. So it never lies on a plane between cells nor straight above the center of a side, and
-a camera that does counts to the upper cell. Whatever is decided by comparing has an answer then.
+sides are even numbers of units. The camera is brought to an odd one: half of it, rounded down,
+times two, plus one. So it never lies on a plane between cells nor straight above the center of a
+side, and a camera that does counts to the upper cell. Whatever is decided by comparing has an
+answer then.
 
-Parallel rays have a direction instead, in 2^-40 of its largest coordinate. A camera that is more than
-2^40 cells away, where neighboring rays differ by less than a unit, is taken for one.
+Parallel rays have a direction instead, in 2^-40 of its largest coordinate. A camera that is more
+than 2^40 cells away, where neighboring rays differ by less than a unit, is taken for one.
 */
 
 use glam::DVec3;
@@ -57,15 +58,6 @@ impl Camera {
         Self::Along(scaled.to_array().map(whole))
     }
 
-    /// The step along an axis that leads from a cell towards the camera: -1, 0 or 1.
-    #[inline]
-    pub(crate) fn step(&self, axis: usize, cell: u32) -> i64 {
-        match self {
-            Self::At(place) => ((place[axis] >> FRACTION) - i64::from(cell)).signum(),
-            Self::Along(direction) => direction[axis].signum(),
-        }
-    }
-
     /// The cell that holds the camera, if it is a point.
     pub(crate) fn cell(&self) -> Option<[i64; 3]> {
         match self {
@@ -74,7 +66,8 @@ impl Camera {
         }
     }
 
-    /// The cell that is nearest to the camera. Along each axis, every ray gets nearer to it or stays.
+    /// The cell that is nearest to the camera. Along each axis, every ray gets nearer to it or
+    /// stays.
     pub(crate) fn nearest(&self, dims: [u32; 3]) -> [u32; 3] {
         std::array::from_fn(|axis| {
             let last = dims[axis].saturating_sub(1);
@@ -86,15 +79,28 @@ impl Camera {
         })
     }
 
+    /// The indices of cells from which the camera is seen upwards along an axis, and downwards:
+    /// those below the first number, and those above the second one.
+    pub(crate) fn bounds(&self, axis: usize) -> [i64; 2] {
+        match self {
+            Self::At(place) => [place[axis] >> FRACTION; 2],
+            Self::Along(direction) => match direction[axis].signum() {
+                1 => [i64::MAX; 2],
+                0 => [i64::MIN, i64::MAX],
+                _ => [i64::MIN; 2],
+            },
+        }
+    }
+
     /// The way from the center of a side of a cell to the camera, below 2^59 along each axis.
     ///
     /// The side is normal to `axis`, in the direction of `step`.
-    #[inline]
-    pub(crate) fn way(&self, cell: [u32; 3], axis: usize, step: i64) -> [i64; 3] {
+    #[inline(always)]
+    pub(crate) fn way(&self, cell: [i64; 3], axis: usize, step: i64) -> [i64; 3] {
         match self {
             Self::At(place) => {
                 let mut way = std::array::from_fn(|i| {
-                    place[i] - ((i64::from(cell[i]) << FRACTION) + (1 << (FRACTION - 1)))
+                    place[i] - ((cell[i] << FRACTION) + (1 << (FRACTION - 1)))
                 });
                 way[axis] -= step << (FRACTION - 1);
                 way
@@ -140,7 +146,7 @@ mod tests {
         let half = 1 << (FRACTION - 1);
         assert_eq!(camera, Camera::At([6 * half + 1, 6 * half - 1, 7 * half + 1]));
         assert_eq!(camera.cell(), Some([3, 2, 3]));
-        assert_eq!([2, 3, 4].map(|cell| camera.step(0, cell)), [1, 0, -1]);
+        assert_eq!(camera.bounds(0), [3, 3]);
         assert_eq!(camera.way([2, 3, 3], 0, 1), [1, -half - 1, 1]);
     }
 
@@ -170,6 +176,6 @@ mod tests {
         let view = View::look_at(DVec3::ZERO, DVec3::NEG_Y, DVec3::Z).unwrap();
         let camera = Camera::new(&cells(), &view.with_orthographic(1.0).unwrap(), DVec3::ZERO);
         assert_eq!(camera, Camera::Along([0, 1 << 40, 0]));
-        assert_eq!([0, 1, 2].map(|axis| camera.step(axis, 5)), [0, 1, 0]);
+        assert_eq!([0, 1].map(|axis| camera.bounds(axis)), [[i64::MIN, i64::MAX], [i64::MAX; 2]]);
     }
 }
