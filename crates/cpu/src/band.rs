@@ -61,6 +61,13 @@ pub(crate) fn nearest(depth: f64, radius: f64) -> f64 {
     depth - radius - 1e-6 * (depth.abs() + radius)
 }
 
+/// The first and last of some pixels, which are in the picture.
+#[inline]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "they are in range")]
+fn ends(range: &RangeInclusive<i64>) -> [usize; 2] {
+    [*range.start() as usize, *range.end() as usize]
+}
+
 /// The largest side, in pixels, of a sphere that is looked at by tiles before it is set up.
 const GLANCE: usize = 64;
 
@@ -125,7 +132,6 @@ impl Band<'_> {
         if first > last || screen.columns.is_empty() {
             return;
         }
-        let ends = |range: &RangeInclusive<i64>| [*range.start() as usize, *range.end() as usize];
         self.tiles.touch(ends(&screen.columns), ends(&screen.rows));
         let ball = Ball { center, radius, nearest, id };
         match Disc::new(self.camera, center, radius) {
