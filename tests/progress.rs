@@ -67,7 +67,7 @@ fn scene(seed: u64) -> Scene {
         records[i] = records[count - 1 - i];
     }
     let mut scene = Scene::new(records);
-    scene.origin = if seed % 4 == 0 { DVec3::splat(1e7) } else { DVec3::ZERO };
+    scene.origin = if seed.is_multiple_of(4) { DVec3::splat(1e7) } else { DVec3::ZERO };
     scene
 }
 
