@@ -76,7 +76,8 @@ pub(crate) fn measure(
     plan: &Plan,
 ) -> Result<Curve> {
     let (scene, view) = (world.scene(), target.view);
-    let mut pipeline = Pipeline::new((FrustumCull, order.stage()), Counting::new(plan.hidden));
+    let stages = (FrustumCull, order.stage(target, &world.grid)?);
+    let mut pipeline = Pipeline::new(stages, Counting::new(plan.hidden));
     let in_view = in_view(world, target)?;
     let budget = plan.budget.unwrap_or((in_view.records / 1000).max(1));
     let (begun, mut time) = clock::time(|| pipeline.progressive(scene, &world.grid, view, budget));

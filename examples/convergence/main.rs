@@ -17,6 +17,7 @@ mod clock;
 mod compare;
 mod counting;
 mod curve;
+mod hindsight;
 mod order;
 mod plot;
 mod report;

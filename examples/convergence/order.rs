@@ -1,5 +1,7 @@
 //! The orders in which bricks are drawn, by name.
 
+use crate::{compare::Target, hindsight::Hindsight};
+use anyhow::Result;
 use clap::ValueEnum;
 use puncta::{
     Depth, Grid, Stage,
@@ -21,24 +23,27 @@ pub(crate) enum Order {
     DensityFifo,
     /// Those first of which a record is expected to show the most pixels
     Transmittance,
+    /// By what the finished picture shows of a brick: what no order can know, to see what is left to gain
+    Hindsight,
 }
 
 impl Order {
     /// Those that are compared unless others are asked for.
     pub(crate) fn usual() -> Vec<Self> {
         let all = Self::value_variants().iter().copied();
-        all.filter(|&order| order != Self::Memory).collect()
+        all.filter(|&order| !matches!(order, Self::Memory | Self::Hindsight)).collect()
     }
 
     /// The stage that makes this order.
-    pub(crate) fn stage(self) -> Box<dyn Stage<Grid>> {
-        match self {
+    pub(crate) fn stage(self, target: &Target<'_>, grid: &Grid) -> Result<Box<dyn Stage<Grid>>> {
+        Ok(match self {
             Self::Memory => Box::new(()),
             Self::Depth => Box::new(Depth::default()),
             Self::Level => Box::new(Level::default()),
             Self::Density => Box::new(Density::default()),
             Self::DensityFifo => Box::new(DensityFifo::default()),
             Self::Transmittance => Box::new(Transmittance::default()),
-        }
+            Self::Hindsight => Box::new(Hindsight::new(target, grid)?),
+        })
     }
 }
