@@ -153,7 +153,7 @@ proptest! {
         let grid = Grid::sort_scene(&mut scene, &GridConfig::longest_side(cells)).unwrap();
         let view = moved(&view, scene.origin);
         let expected = bits(&complete(&scene, &view));
-        let mut pipeline = Pipeline::new((FrustumCull, order), CpuRenderer::default());
+        let mut pipeline = Pipeline::new((FrustumCull, order.stage()), CpuRenderer::default());
         if has_cache {
             pipeline.render(&scene, &grid, &moved(&before, scene.origin)).unwrap();
         }
