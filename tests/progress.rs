@@ -42,8 +42,39 @@ impl<G: ?Sized> Stage<G> for Any {
     }
 }
 
-fn orders() -> impl Strategy<Value = Any> {
-    prop_oneof![Just(Any::Nearest), Just(Any::Farthest), Just(Any::Shuffled), Just(Any::MostOpen)]
+/// Those, and those that there are.
+#[derive(Clone, Copy, Debug)]
+enum Order {
+    Any(Any),
+    Level,
+    Density,
+    DensityFifo,
+    Transmittance,
+}
+
+impl Order {
+    fn stage(self) -> Box<dyn Stage<Grid>> {
+        match self {
+            Self::Any(any) => Box::new(any),
+            Self::Level => Box::new(Level::default()),
+            Self::Density => Box::new(Density::default()),
+            Self::DensityFifo => Box::new(DensityFifo::default()),
+            Self::Transmittance => Box::new(Transmittance::default()),
+        }
+    }
+}
+
+fn orders() -> impl Strategy<Value = Order> {
+    prop_oneof![
+        Just(Order::Any(Any::Nearest)),
+        Just(Order::Any(Any::Farthest)),
+        Just(Order::Any(Any::Shuffled)),
+        Just(Order::Any(Any::MostOpen)),
+        Just(Order::Level),
+        Just(Order::Density),
+        Just(Order::DensityFifo),
+        Just(Order::Transmittance),
+    ]
 }
 
 /// Spheres in a cube, in a few clusters or on sheets, with radii over two decades; some coincide.
