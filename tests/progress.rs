@@ -6,8 +6,9 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use puncta::{
-    Amount, Brick, Budget, Content, CpuRenderer, Depth, Frame, FrustumCull, Grid, GridConfig,
-    NO_RECORD, Picture, Pipeline, Progress, Record, Renderer, Scene, Sphere, Stage, View, Visible,
+    Amount, Brick, Budget, Content, CpuRenderer, Density, DensityFifo, Depth, Frame, FrustumCull,
+    Grid, GridConfig, Level, NO_RECORD, Picture, Pipeline, Progress, Record, Renderer, Scene,
+    Sphere, Stage, Transmittance, View, Visible,
     core::{Aabb, VisibleBrick},
 };
 use rand::{RngExt, SeedableRng};

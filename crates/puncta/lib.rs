@@ -15,4 +15,6 @@ pub use puncta_cpu::{Background, ColorMap, Coloring, CpuRenderer, Shading, shade
 pub use puncta_grid::{BrickFile, ConvertConfig, convert};
 pub use puncta_grid::{Cells, Error as GridError, Fit, Grid, GridConfig, Order, Resolution};
 pub use puncta_io::{Format, Loaded, ReadOptions};
-pub use puncta_occlusion::{Density, Depth, FrustumCull, Level, OcclusionGraph, Transmittance};
+pub use puncta_occlusion::{
+    Density, DensityFifo, Depth, FrustumCull, Level, OcclusionGraph, Transmittance,
+};
