@@ -23,7 +23,8 @@ pub(crate) enum Way {
 
 impl Way {
     fn all() -> Vec<Self> {
-        let orders = Order::value_variants().iter().copied().map(Self::In);
+        let orders = Order::value_variants().iter().copied();
+        let orders = orders.filter(|order| order.stage().is_some()).map(Self::In);
         orders.chain([Self::BackToFront]).collect()
     }
 
@@ -39,7 +40,7 @@ impl Way {
 
     fn stage(self) -> Box<dyn Stage<Grid>> {
         match self {
-            Self::In(order) => order.stage(),
+            Self::In(order) => order.stage().unwrap_or_else(|| Box::new(())),
             Self::BackToFront => Box::new(|frame: &Frame<'_, Grid>, visible: &mut Visible| {
                 Depth::default().apply(frame, visible);
                 visible.bricks.reverse();

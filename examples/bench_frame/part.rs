@@ -55,7 +55,7 @@ pub(crate) fn measure(
     let mut graph = OcclusionGraph::default();
     let mut parts: Vec<_> = Part::all().into_iter().map(|part| (part, vec![])).collect();
     let mut stages: Vec<_> =
-        Order::usual().into_iter().map(|order| (order, order.stage())).collect();
+        Order::usual().into_iter().filter_map(|order| Some((order, order.stage()?))).collect();
     // The first time is for getting memory.
     for repetition in 0..=often.parts {
         for (part, spans) in &mut parts {

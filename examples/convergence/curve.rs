@@ -4,6 +4,7 @@ use crate::{
     clock::{self, Span},
     compare::{Sketch, Target},
     counting::{Counting, Hidden},
+    hindsight::Hindsight,
     order::Order,
     progress::Bar,
     world::World,
@@ -76,7 +77,11 @@ pub(crate) fn measure(
     plan: &Plan,
 ) -> Result<Curve> {
     let (scene, view) = (world.scene(), target.view);
-    let stages = (FrustumCull, order.stage(target, &world.grid)?);
+    let order_stage = match order.stage() {
+        Some(stage) => stage,
+        None => Box::new(Hindsight::new(target, &world.grid)?),
+    };
+    let stages = (FrustumCull, order_stage);
     let mut pipeline = Pipeline::new(stages, Counting::new(plan.hidden));
     let in_view = in_view(world, target)?;
     let budget = plan.budget.unwrap_or((in_view.records / 1000).max(1));

@@ -1,7 +1,5 @@
 //! The orders in which bricks are drawn, by name.
 
-use crate::{compare::Target, hindsight::Hindsight};
-use anyhow::Result;
 use clap::ValueEnum;
 use puncta::{
     Depth, Grid, Stage,
@@ -34,16 +32,16 @@ impl Order {
         all.filter(|&order| !matches!(order, Self::Memory | Self::Hindsight)).collect()
     }
 
-    /// The stage that makes this order.
-    pub(crate) fn stage(self, target: &Target<'_>, grid: &Grid) -> Result<Box<dyn Stage<Grid>>> {
-        Ok(match self {
+    /// The stage that makes this order; none makes that of hindsight without the finished picture.
+    pub(crate) fn stage(self) -> Option<Box<dyn Stage<Grid>>> {
+        Some(match self {
             Self::Memory => Box::new(()),
             Self::Depth => Box::new(Depth::default()),
             Self::Level => Box::new(Level::default()),
             Self::Density => Box::new(Density::default()),
             Self::DensityFifo => Box::new(DensityFifo::default()),
             Self::Transmittance => Box::new(Transmittance::default()),
-            Self::Hindsight => Box::new(Hindsight::new(target, grid)?),
+            Self::Hindsight => return None,
         })
     }
 }
