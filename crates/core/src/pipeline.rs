@@ -13,7 +13,7 @@ whole picture.
 */
 
 use crate::{
-    Amount, Bricks, Content, Frame, Picture, Progress, Record, Renderer, Scene, Stage, View,
+    Amount, Brick, Bricks, Content, Frame, Picture, Progress, Record, Renderer, Scene, Stage, View,
     Visible, VisibleBrick,
 };
 use std::{
@@ -226,8 +226,7 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
             return Err(error);
         }
         stages.apply(&Frame { view, origin, bricks: self.bricks }, visible);
-        // Stages cannot make bricks, but may have swapped in a list of others.
-        visible.bricks.retain(|brick| (brick.index() as usize) < list.len());
+        keep_known(visible, list);
         let left = Amount::of(list, &visible.bricks);
         self.progress = Progress { left, culled: all - left, ..Progress::default() };
         self.progress.open = if visible.bricks.is_empty() { 0 } else { self.pixels() };
@@ -290,7 +289,7 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
         let left = self.pipeline.visible.bricks.get(self.next..).unwrap_or_default();
         let mut sum = 0;
         let enough = left.iter().position(|brick| {
-            sum += content.bricks[brick.index() as usize].records.len() as u64;
+            sum += Amount::of(content.bricks, std::slice::from_ref(brick)).records;
             sum >= records
         });
         let now = &left[..enough.map_or(left.len(), |last| last + 1)];
@@ -319,14 +318,19 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
         } else if open.is_some() {
             visible.bricks.retain(|brick| brick.open() > 0);
         }
-        self.progress.open = open.unwrap_or(pixels);
         let left = Amount::of(content.bricks, &visible.bricks);
         self.progress.skipped += self.progress.left - left;
         self.progress.left = left;
         if open.is_some() {
             let (view, origin) = (&self.view, self.scene.origin);
             stages.refine(&Frame { view, origin, bricks: self.bricks }, visible);
+            keep_known(visible, content.bricks);
+            if visible.bricks.len() as u64 != left.bricks {
+                self.progress.left = Amount::of(content.bricks, &visible.bricks);
+                self.progress.culled += left - self.progress.left;
+            }
         }
+        self.progress.open = if visible.bricks.is_empty() { 0 } else { open.unwrap_or(pixels) };
         Ok(())
     }
 
@@ -346,6 +350,11 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
 
 /// The fewest records that are drawn at once for a budget of time.
 const SMALLEST: u64 = 1 << 14;
+
+/// Stages cannot make bricks, but may have swapped in a list of others.
+fn keep_known(visible: &mut Visible, bricks: &[Brick]) {
+    visible.bricks.retain(|brick| (brick.index() as usize) < bricks.len());
+}
 
 fn content<'a, R, G: Bricks>(scene: &'a Scene<R>, bricks: &'a G) -> Content<'a, R> {
     Content { scene, bricks: bricks.bricks(), blocks: bricks.blocks() }
