@@ -178,10 +178,11 @@ impl Visible {
         let place = |(index, brick): (u32, &Brick)| {
             let (min, max) = (brick.bounds.min.as_dvec3(), brick.bounds.max.as_dvec3());
             let half = (max - min) * 0.5;
-            let middle = forward.dot(to_origin + (min + half));
+            let center = to_origin + (min + half);
+            let (middle, terms) = (forward.dot(center), reaching.dot(center.abs()));
             let reach = reaching.dot(half) + f64::from(brick.radius_max);
             // Twice the rounding of the terms above, so that the bounds hold.
-            let slack = 8.0 * f64::EPSILON * (distance + middle.abs() + reach);
+            let slack = 8.0 * f64::EPSILON * (distance + terms + reach);
             let (near, far) = (middle - reach - slack, middle + reach + slack);
             let (near, far) = (below(near), -below(-far));
             VisibleBrick { index, near, far, open: u32::MAX, gain: f32::INFINITY }
