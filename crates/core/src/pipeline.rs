@@ -21,12 +21,15 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How much is drawn before [`Progressive`] comes back.
+/// How much is drawn in one step of a [`Progressive`] picture.
+///
+/// Numbers of records and durations turn into budgets by themselves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Budget {
-    /// Bricks that hold at least this many records.
+    /// Bricks that hold at least this many records, those that are skipped included.
     Records(u64),
-    /// About as much as can be drawn in this time, at least one brick.
+    /// About as much as can be drawn in this time, at least one brick. What a step draws depends on
+    /// the machine then; the complete picture does not.
     Time(Duration),
 }
 
@@ -93,7 +96,7 @@ impl<S, D> Pipeline<S, D> {
         Self { stages, renderer, visible: Visible::default(), speed: None }
     }
 
-    /// Draws everything that can be seen.
+    /// Draws the complete picture.
     ///
     /// # Errors
     ///
@@ -166,6 +169,10 @@ impl<S, D> Pipeline<S, D> {
 }
 
 /// A picture that is being drawn, step by step.
+///
+/// As an iterator it draws at each step, for its [`Budget`], and gives where the picture stands. It ends
+/// when nothing is left that can change the picture, and after an error. The first step of a picture
+/// only draws what was seen in the one before, whatever the budget, if that is known.
 pub struct Progressive<'a, R, G, S, D> {
     pipeline: &'a mut Pipeline<S, D>,
     scene: &'a Scene<R>,
@@ -206,7 +213,7 @@ impl<R, G, S, D> Progressive<'_, R, G, S, D> {
 }
 
 impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S, D> {
-    /// Turns to another view. What is left of the view before is not drawn any more.
+    /// Turns to another view, at once: what is left of the view before is not drawn any more.
     ///
     /// # Errors
     ///
@@ -234,7 +241,8 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
         Ok(())
     }
 
-    /// The picture of what was drawn so far.
+    /// The picture of what was drawn so far; the complete one if it is
+    /// [settled](Progress::settled).
     ///
     /// # Errors
     ///
