@@ -259,6 +259,16 @@ mod tests {
     }
 
     #[test]
+    fn depths_are_rounded_to_the_front() {
+        for x in [0.1, -0.1, 1e300, -1e300, 1e-300, -1e-300, f64::INFINITY, 1.0, 0.0, 16_777_217.0]
+        {
+            assert!(f64::from(below(x)) <= x, "{x}");
+        }
+        assert_eq!(below(16_777_217.0), 16_777_216.0);
+        assert_eq!(below(1e300), f32::MAX);
+    }
+
+    #[test]
     fn bounds_are_tight() {
         let view = view(DVec3::new(10.0, 0.2, 0.3), 0.5, true).unwrap();
         let camera = Camera::new(&view, DVec3::ZERO);
