@@ -168,7 +168,7 @@ fn check<S: Stage<Own>>(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { max_shrink_iters: 100, ..ProptestConfig::with_cases(3000) })]
+    #![proptest_config(ProptestConfig { max_shrink_iters: 100, ..ProptestConfig::with_cases(1000) })]
 
     #[test]
     fn nothing_hostile_changes_a_picture(seed in any::<u64>(), budget in prop_oneof![Just(1_u64), 2_u64..300]) {
@@ -322,4 +322,37 @@ fn what_is_dropped_on_the_way_is_culled() {
     let last = steps.next().unwrap().unwrap();
     assert!(last.settled() && steps.next().is_none());
     assert_eq!([last.drawn.records, last.left.records, last.culled.records], [2, 0, 1]);
+}
+
+/// The records that were seen are those of another scene by now.
+#[test]
+fn a_scene_may_change_between_pictures() {
+    let mut random = Pcg64Mcg::seed_from_u64(3);
+    let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
+    let mut recalled = 0;
+    for _ in 0..200 {
+        let (scene, target) = scene(&mut random);
+        let own = own_bricks(&scene, &mut random);
+        let scale = f64::from(brick(&scene, 0..scene.records.len() as u32).radius_max);
+        let Some(view) = view(&mut random, target, scale) else { continue };
+        let mut steps = pipeline.progressive(&scene, &own, &view, 100).unwrap();
+        steps.by_ref().for_each(|step| recalled += step.unwrap().recalled);
+        assert!(bits(&steps.picture().unwrap()) == bits(&complete(&scene, &view)));
+    }
+    assert!(recalled > 100);
+}
+
+#[test]
+fn what_is_asked_before_a_picture_is_begun_is_an_error() {
+    let scene = Scene::new(vec![Sphere::new([0.0; 3], 0.5)]);
+    let bricks = [brick(&scene, 0..1)];
+    let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
+    let content = Content { scene: &scene, bricks: &bricks, blocks: &[] };
+    let mut visible = Visible::all(&bricks, scene.origin, &view).bricks;
+    let mut renderer = CpuRenderer::default();
+    assert!(renderer.draw(&content, &visible).is_err());
+    assert!(renderer.recall(&content, &visible).is_err());
+    assert!(renderer.survey(&content, &mut visible).is_err());
+    assert!(Renderer::<Sphere>::finish(&mut renderer).is_err());
+    assert!(!renderer.is_open(0, 0));
 }
