@@ -1,7 +1,11 @@
 //! Promise 2 under hostile scenes, views, bricks and stages: what is skipped never changes the
 //! picture, bit by bit, and nothing panics.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::cast_possible_truncation,
+    reason = "a test may panic, and its numbers are small"
+)]
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
@@ -171,7 +175,10 @@ proptest! {
     #![proptest_config(ProptestConfig { max_shrink_iters: 100, ..ProptestConfig::with_cases(1000) })]
 
     #[test]
-    fn nothing_hostile_changes_a_picture(seed in any::<u64>(), budget in prop_oneof![Just(1_u64), 2_u64..300]) {
+    fn nothing_hostile_changes_a_picture(
+        seed in any::<u64>(),
+        budget in prop_oneof![Just(1_u64), 2_u64..300],
+    ) {
         let mut random = Pcg64Mcg::seed_from_u64(seed);
         let (scene, target) = scene(&mut random);
         let own = own_bricks(&scene, &mut random);

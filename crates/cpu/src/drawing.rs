@@ -139,7 +139,10 @@ mod tests {
         fn fresh_tiles_hold_the_largest_depths(
             sizes in [(1_u32..100, 1_u32..150), (1_u32..100, 1_u32..150)],
             is_perspective in any::<bool>(),
-            spheres in prop::collection::vec(([-1.5_f32..1.5, -1.5_f32..1.5, -1.0_f32..3.5], 0.01_f32..1.0), 0..20),
+            spheres in prop::collection::vec(
+                ([-1.5_f32..1.5, -1.5_f32..1.5, -1.0_f32..3.5], 0.01_f32..1.0),
+                0..20,
+            ),
         ) {
             let records: Vec<Sphere> =
                 spheres.iter().map(|&(center, radius)| Sphere { center, radius }).collect();
