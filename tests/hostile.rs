@@ -10,8 +10,8 @@
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use puncta::{
-    Brick, Bricks, Content, CpuRenderer, Depth, Frame, FrustumCull, Picture, Pipeline, Record,
-    Renderer, Scene, Sphere, Stage, View, Visible,
+    Brick, Bricks, CpuRenderer, Depth, Frame, FrustumCull, Picture, Pipeline, Record, Scene,
+    Sphere, Stage, View, Visible,
     core::{Aabb, Block, VisibleBrick},
 };
 use rand::{RngExt, SeedableRng, seq::SliceRandom};
@@ -118,14 +118,21 @@ fn scene(random: &mut Pcg64Mcg) -> (Scene, DVec3) {
     (scene, target)
 }
 
-/// A view of a target, from anywhere, with any angle, in a picture of any shape.
-fn view(random: &mut Pcg64Mcg, target: DVec3, scale: f64) -> Option<View> {
+/// A view of a target, from anywhere, with any angle, in a picture of any shape: of one sphere, or of
+/// much of the scene.
+fn view(random: &mut Pcg64Mcg, (scene, target): (&Scene, DVec3)) -> Option<View> {
+    let all = brick(scene, 0..scene.records.len() as u32);
+    let is_wide = random.random_range(0..3) > 0;
+    let side = (all.bounds.max - all.bounds.min).max_element();
+    let scale = f64::from(if is_wide { side } else { all.radius_max });
     let mut axis = || DVec3::from([0; 3].map(|_| random.random::<f64>() * 2.0 - 1.0));
     let (direction, up) = (axis(), axis());
     let mut power = |from: f64, to: f64| 10_f64.powf(random.random_range(from..to));
-    let eye = target + direction * scale * power(-4.0, 3.0);
-    let (near, height) = (scale * power(-9.0, 0.5), scale * power(-7.0, 8.0));
-    let angle = power(-9.0, 0.4969);
+    let eye =
+        target + direction * scale * if is_wide { power(-2.0, 1.0) } else { power(-4.0, 3.0) };
+    let near = scale * power(-9.0, 0.5);
+    let height = scale * if is_wide { power(-1.0, 1.0) } else { power(-7.0, 8.0) };
+    let angle = power(if is_wide { -1.0 } else { -9.0 }, 0.4969);
     let sizes = [(1, 1), (1, 300), (300, 1), (97, 41), (40, 130), (8, 8), (64, 31)];
     let (width, height_pixels) = sizes[random.random_range(0..sizes.len())];
     let view = View::look_at(eye, target, up).ok()?.with_size(width, height_pixels).ok()?;
@@ -182,9 +189,8 @@ proptest! {
         let mut random = Pcg64Mcg::seed_from_u64(seed);
         let (scene, target) = scene(&mut random);
         let own = own_bricks(&scene, &mut random);
-        let scale = f64::from(brick(&scene, 0..scene.records.len() as u32).radius_max);
-        let Some(first) = view(&mut random, target, scale) else { return Ok(()) };
-        let Some(second) = view(&mut random, target, scale) else { return Ok(()) };
+        let mut view = || view(&mut random, (&scene, target));
+        let (Some(first), Some(second)) = (view(), view()) else { return Ok(()) };
         let mut plain = Pipeline::new((), CpuRenderer::default());
         let mut ordered = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
         let mut twice = Pipeline::new((FrustumCull, Twice), CpuRenderer::default());
@@ -236,101 +242,6 @@ fn negative_radii_do_no_harm() {
     }
 }
 
-fn begun(view: &View) -> CpuRenderer {
-    let mut renderer = CpuRenderer::default();
-    Renderer::<Sphere>::begin(&mut renderer, view).unwrap();
-    renderer
-}
-
-/// Two scenes that differ in their origins alone, and share their bricks, in one picture: what is
-/// hidden in one place is not in the other.
-#[test]
-fn bricks_can_be_drawn_in_two_places() {
-    let scene = Scene::new(vec![Sphere::new([0.0; 3], 1.0), Sphere::new([0.0, 0.0, -3.0], 0.5)]);
-    let moved = Scene { origin: DVec3::X * 2.5, ..scene.clone() };
-    let bricks = [brick(&scene, 0..1), brick(&scene, 1..2)];
-    let view = View::look_at(DVec3::Z * 9.0, DVec3::ZERO, DVec3::Y).unwrap();
-    let view = view.with_size(190, 90).unwrap();
-    let mut renderer = begun(&view);
-    let mut draw = |scene: &Scene, which: Range<usize>| {
-        let content = Content { scene, bricks: &bricks, blocks: &[] };
-        let mut visible = Visible::all(&bricks, scene.origin, &view).bricks;
-        renderer.draw(&content, &visible[which]).unwrap();
-        renderer.survey(&content, &mut visible).unwrap();
-        visible[1].open()
-    };
-    assert_eq!(draw(&scene, 0..1), 0);
-    assert!(draw(&moved, 0..0) > 10);
-    draw(&moved, 1..2);
-    let picture = Renderer::<Sphere>::finish(&mut renderer).unwrap();
-    assert_eq!(picture.visible_records(), [0, 1]);
-}
-
-/// Blocks may be others at the next call.
-#[test]
-fn blocks_may_change_while_a_picture_is_drawn() {
-    let scene = Scene::new(vec![Sphere::new([0.0; 3], 2.0), Sphere::new([0.0, 0.0, -9.0], 0.5)]);
-    let bricks = [brick(&scene, 0..1), brick(&scene, 1..2)];
-    let behind = [Block::of_run(1, &bricks[1..])];
-    let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
-    let view = view.with_size(64, 64).unwrap();
-    let mut renderer = begun(&view);
-    let mut visible = Visible::all(&bricks, scene.origin, &view).bricks;
-    let content = Content { scene: &scene, bricks: &bricks, blocks: &behind };
-    renderer.draw(&content, &[]).unwrap();
-    let content = Content { blocks: &[], ..content };
-    renderer.draw(&content, &visible[..1]).unwrap();
-    renderer.survey(&content, &mut visible).unwrap();
-    assert_eq!(visible[1].open(), 0);
-    assert!(visible[0].open() > 0);
-}
-
-/// What a stage may do wrong when it orders anew: it takes the bricks of another list.
-#[test]
-fn bricks_of_another_list_are_not_drawn() {
-    struct Swaps(Vec<Brick>);
-    impl<G: ?Sized> Stage<G> for Swaps {
-        fn apply(&mut self, _: &Frame<'_, G>, _: &mut Visible) {}
-        fn refine(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
-            *visible = Visible::all(&self.0, frame.origin, frame.view);
-        }
-    }
-    let scene = Scene::new(vec![Sphere::new([0.0; 3], 0.5); 3]);
-    let own = [0..1, 1..2, 2..3].map(|range| brick(&scene, range));
-    let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
-    let view = view.with_size(64, 64).unwrap();
-    let mut pipeline = Pipeline::new(Swaps(vec![own[0].clone(); 9]), CpuRenderer::default());
-    let mut steps = pipeline.progressive(&scene, &own, &view, 1).unwrap();
-    for _ in 0..10 {
-        steps.next().map(Result::unwrap);
-        assert!(steps.left().iter().all(|brick| brick.index() < 3));
-    }
-}
-
-/// What a stage drops while a picture is drawn is told as culled, and the picture ends.
-#[test]
-fn what_is_dropped_on_the_way_is_culled() {
-    struct Drops;
-    impl<G: ?Sized> Stage<G> for Drops {
-        fn apply(&mut self, _: &Frame<'_, G>, _: &mut Visible) {}
-        fn refine(&mut self, _: &Frame<'_, G>, visible: &mut Visible) {
-            visible.bricks.pop();
-        }
-    }
-    let at = |x: f32| Sphere::new([x, 0.0, 0.0], 0.4);
-    let scene = Scene::new(vec![at(-1.0), at(0.0), at(1.0)]);
-    let own = [0..1, 1..2, 2..3].map(|range| brick(&scene, range));
-    let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
-    let mut pipeline = Pipeline::new(Drops, CpuRenderer::default());
-    let view = view.with_size(64, 64).unwrap();
-    let mut steps = pipeline.progressive(&scene, &own, &view, 1).unwrap();
-    let first = steps.next().unwrap().unwrap();
-    assert_eq!([first.drawn.bricks, first.left.bricks, first.culled.bricks], [1, 1, 1]);
-    let last = steps.next().unwrap().unwrap();
-    assert!(last.settled() && steps.next().is_none());
-    assert_eq!([last.drawn.records, last.left.records, last.culled.records], [2, 0, 1]);
-}
-
 /// The records that were seen are those of another scene by now.
 #[test]
 fn a_scene_may_change_between_pictures() {
@@ -340,26 +251,10 @@ fn a_scene_may_change_between_pictures() {
     for _ in 0..200 {
         let (scene, target) = scene(&mut random);
         let own = own_bricks(&scene, &mut random);
-        let scale = f64::from(brick(&scene, 0..scene.records.len() as u32).radius_max);
-        let Some(view) = view(&mut random, target, scale) else { continue };
+        let Some(view) = view(&mut random, (&scene, target)) else { continue };
         let mut steps = pipeline.progressive(&scene, &own, &view, 100).unwrap();
         steps.by_ref().for_each(|step| recalled += step.unwrap().recalled);
         assert!(bits(&steps.picture().unwrap()) == bits(&complete(&scene, &view)));
     }
     assert!(recalled > 100);
-}
-
-#[test]
-fn what_is_asked_before_a_picture_is_begun_is_an_error() {
-    let scene = Scene::new(vec![Sphere::new([0.0; 3], 0.5)]);
-    let bricks = [brick(&scene, 0..1)];
-    let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
-    let content = Content { scene: &scene, bricks: &bricks, blocks: &[] };
-    let mut visible = Visible::all(&bricks, scene.origin, &view).bricks;
-    let mut renderer = CpuRenderer::default();
-    assert!(renderer.draw(&content, &visible).is_err());
-    assert!(renderer.recall(&content, &visible).is_err());
-    assert!(renderer.survey(&content, &mut visible).is_err());
-    assert!(Renderer::<Sphere>::finish(&mut renderer).is_err());
-    assert!(!renderer.is_open(0, 0));
 }
