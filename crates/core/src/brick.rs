@@ -11,6 +11,9 @@ use glam::DVec3;
 use std::ops::Range;
 
 /// A run of neighboring records and what is known about them all.
+///
+/// Renderers trust the box and the radius: a record that is larger, or lies elsewhere, may be missing
+/// from the picture. What is larger than need be costs time only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brick {
     /// The records, as indices into those of the scene.
@@ -54,8 +57,9 @@ impl Block {
         let empty = Self { bricks: first..first, bounds: Aabb::EMPTY, radius_max: 0.0 };
         run.iter().fold(empty, |mut block, brick| {
             block.bricks.end = block.bricks.end.saturating_add(1);
-            block.bounds.add(brick.bounds.min);
-            block.bounds.add(brick.bounds.max);
+            // Not by points: the corners of an empty box lie beyond all others.
+            block.bounds.min = block.bounds.min.min(brick.bounds.min);
+            block.bounds.max = block.bounds.max.max(brick.bounds.max);
             block.radius_max = block.radius_max.max(brick.radius_max);
             block
         })
@@ -71,12 +75,14 @@ impl Block {
 }
 
 /// What holds bricks: a grid, a list, or a spatial structure of the user's own.
+///
+/// Bricks may lie in any order, share records, and be empty. A record that is in no brick is not drawn.
 pub trait Bricks {
     /// All bricks.
     fn bricks(&self) -> &[Brick];
 
-    /// Blocks of bricks, ascending and without overlap. Each must hold what its bricks hold; bricks
-    /// that are in no block are looked at one by one.
+    /// Blocks of bricks, ascending and without overlap. The box and radius of each must hold those of
+    /// its bricks. Bricks that are in no block are looked at one by one.
     fn blocks(&self) -> &[Block] {
         &[]
     }
@@ -146,8 +152,9 @@ impl VisibleBrick {
         self.open
     }
 
-    /// How much of the picture it may be expected to change, in pixels: those where there is
-    /// nothing yet count fully, others by how far the brick reaches in front of what is there.
+    /// How much of the picture it may be expected to change, in pixels: those where there is nothing
+    /// yet count fully, others by how far the brick reaches in front of what is there, and at most
+    /// half. +inf while nobody has looked.
     #[must_use]
     #[inline]
     pub const fn gain(&self) -> f32 {
@@ -178,10 +185,11 @@ impl Visible {
         let place = |(index, brick): (u32, &Brick)| {
             let (min, max) = (brick.bounds.min.as_dvec3(), brick.bounds.max.as_dvec3());
             let half = (max - min) * 0.5;
-            let middle = forward.dot(to_origin + (min + half));
+            let center = to_origin + (min + half);
+            let (middle, terms) = (forward.dot(center), reaching.dot(center.abs()));
             let reach = reaching.dot(half) + f64::from(brick.radius_max);
             // Twice the rounding of the terms above, so that the bounds hold.
-            let slack = 8.0 * f64::EPSILON * (distance + middle.abs() + reach);
+            let slack = 8.0 * f64::EPSILON * (distance + terms + reach);
             let (near, far) = (middle - reach - slack, middle + reach + slack);
             let (near, far) = (below(near), -below(-far));
             VisibleBrick { index, near, far, open: u32::MAX, gain: f32::INFINITY }
@@ -251,5 +259,9 @@ mod tests {
         );
         assert_eq!(blocks[1].bounds, Aabb { min: Vec3::splat(64.0), max: Vec3::splat(128.0) });
         assert_eq!(blocks[1].radius_max, 6.0);
+        // Empty ones do not stretch a block.
+        let mut run = bricks[64..128].to_vec();
+        run.push(Brick { bounds: Aabb::EMPTY, ..brick(0) });
+        assert_eq!(Block::of_run(64, &run).bounds, blocks[1].bounds);
     }
 }

@@ -13,7 +13,7 @@ whole picture.
 */
 
 use crate::{
-    Amount, Bricks, Content, Frame, Picture, Progress, Record, Renderer, Scene, Stage, View,
+    Amount, Brick, Bricks, Content, Frame, Picture, Progress, Record, Renderer, Scene, Stage, View,
     Visible, VisibleBrick,
 };
 use std::{
@@ -21,12 +21,15 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How much is drawn before [`Progressive`] comes back.
+/// How much is drawn in one step of a [`Progressive`] picture.
+///
+/// Numbers of records and durations turn into budgets by themselves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Budget {
-    /// Bricks that hold at least this many records.
+    /// Bricks that hold at least this many records, those that are skipped included.
     Records(u64),
-    /// About as much as can be drawn in this time, at least one brick.
+    /// About as much as can be drawn in this time, at least one brick. What a step draws depends on
+    /// the machine then; the complete picture does not.
     Time(Duration),
 }
 
@@ -93,7 +96,7 @@ impl<S, D> Pipeline<S, D> {
         Self { stages, renderer, visible: Visible::default(), speed: None }
     }
 
-    /// Draws everything that can be seen.
+    /// Draws the complete picture.
     ///
     /// # Errors
     ///
@@ -166,6 +169,10 @@ impl<S, D> Pipeline<S, D> {
 }
 
 /// A picture that is being drawn, step by step.
+///
+/// As an iterator it draws at each step, for its [`Budget`], and gives where the picture stands. It ends
+/// when nothing is left that can change the picture, and after an error. The first step of a picture
+/// only draws what was seen in the one before, whatever the budget, if that is known.
 pub struct Progressive<'a, R, G, S, D> {
     pipeline: &'a mut Pipeline<S, D>,
     scene: &'a Scene<R>,
@@ -206,7 +213,7 @@ impl<R, G, S, D> Progressive<'_, R, G, S, D> {
 }
 
 impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S, D> {
-    /// Turns to another view. What is left of the view before is not drawn any more.
+    /// Turns to another view, at once: what is left of the view before is not drawn any more.
     ///
     /// # Errors
     ///
@@ -226,8 +233,7 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
             return Err(error);
         }
         stages.apply(&Frame { view, origin, bricks: self.bricks }, visible);
-        // Stages cannot make bricks, but may have swapped in a list of others.
-        visible.bricks.retain(|brick| (brick.index() as usize) < list.len());
+        keep_known(visible, list);
         let left = Amount::of(list, &visible.bricks);
         self.progress = Progress { left, culled: all - left, ..Progress::default() };
         self.progress.open = if visible.bricks.is_empty() { 0 } else { self.pixels() };
@@ -235,7 +241,8 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
         Ok(())
     }
 
-    /// The picture of what was drawn so far.
+    /// The picture of what was drawn so far; the complete one if it is
+    /// [settled](Progress::settled).
     ///
     /// # Errors
     ///
@@ -290,7 +297,7 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
         let left = self.pipeline.visible.bricks.get(self.next..).unwrap_or_default();
         let mut sum = 0;
         let enough = left.iter().position(|brick| {
-            sum += content.bricks[brick.index() as usize].records.len() as u64;
+            sum += Amount::of(content.bricks, std::slice::from_ref(brick)).records;
             sum >= records
         });
         let now = &left[..enough.map_or(left.len(), |last| last + 1)];
@@ -319,14 +326,19 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
         } else if open.is_some() {
             visible.bricks.retain(|brick| brick.open() > 0);
         }
-        self.progress.open = open.unwrap_or(pixels);
         let left = Amount::of(content.bricks, &visible.bricks);
         self.progress.skipped += self.progress.left - left;
         self.progress.left = left;
         if open.is_some() {
             let (view, origin) = (&self.view, self.scene.origin);
             stages.refine(&Frame { view, origin, bricks: self.bricks }, visible);
+            keep_known(visible, content.bricks);
+            if visible.bricks.len() as u64 != left.bricks {
+                self.progress.left = Amount::of(content.bricks, &visible.bricks);
+                self.progress.culled += left - self.progress.left;
+            }
         }
+        self.progress.open = if visible.bricks.is_empty() { 0 } else { open.unwrap_or(pixels) };
         Ok(())
     }
 
@@ -346,6 +358,11 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
 
 /// The fewest records that are drawn at once for a budget of time.
 const SMALLEST: u64 = 1 << 14;
+
+/// Stages cannot make bricks, but may have swapped in a list of others.
+fn keep_known(visible: &mut Visible, bricks: &[Brick]) {
+    visible.bricks.retain(|brick| (brick.index() as usize) < bricks.len());
+}
 
 fn content<'a, R, G: Bricks>(scene: &'a Scene<R>, bricks: &'a G) -> Content<'a, R> {
     Content { scene, bricks: bricks.bricks(), blocks: bricks.blocks() }

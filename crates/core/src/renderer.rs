@@ -57,6 +57,11 @@ impl<R: Record> Content<'_, R> {
 /// Drawing is order independent: whatever the order of the bricks, the picture shows the nearest
 /// surface, and the lower [`Scene::id`] where two are equally near.
 ///
+/// A picture begins with [`begin`](Self::begin), and ends when the next one begins. In between, the
+/// other methods may be called in any order and any number of times. Different contents may go into one
+/// picture, but ids do not tell them apart. A renderer may know bricks and blocks by where they lie in
+/// memory: until the picture ends, none of them may change, nor others take their place.
+///
 /// # Examples
 ///
 /// A renderer that draws nothing but counts what it would have to draw:
@@ -100,12 +105,12 @@ pub trait Renderer<R: Record> {
     /// When there cannot be such a picture.
     fn begin(&mut self, view: &View) -> Result<(), Self::Error>;
 
-    /// Draws bricks into the picture, nearest first as far as the stages know, and returns what it
-    /// drew: it may leave out bricks that lie behind what was drawn before.
+    /// Draws bricks into the picture, in the order of the stages or another one, and returns what it
+    /// drew: it may leave out bricks that can change no pixel.
     ///
     /// # Errors
     ///
-    /// When the device fails.
+    /// When no picture was begun, the content is not valid, or the device fails.
     fn draw(
         &mut self,
         content: &Content<'_, R>,
@@ -119,7 +124,7 @@ pub trait Renderer<R: Record> {
     ///
     /// # Errors
     ///
-    /// When the device fails.
+    /// As [`Renderer::draw`].
     fn recall(
         &mut self,
         content: &Content<'_, R>,
@@ -129,7 +134,7 @@ pub trait Renderer<R: Record> {
         Ok(0)
     }
 
-    /// Forgets the pictures that it drew.
+    /// Forgets what was seen in the pictures that it drew, which [`Renderer::recall`] would draw.
     fn forget(&mut self) {}
 
     /// Notes for each of the bricks that are left how many pixels it can still change, at most
@@ -138,7 +143,7 @@ pub trait Renderer<R: Record> {
     ///
     /// # Errors
     ///
-    /// When the device fails.
+    /// As [`Renderer::draw`].
     fn survey(
         &mut self,
         content: &Content<'_, R>,
@@ -152,7 +157,7 @@ pub trait Renderer<R: Record> {
     ///
     /// # Errors
     ///
-    /// When the device fails, or no picture was begun.
+    /// When no picture was begun, or the device fails.
     fn finish(&mut self) -> Result<Picture, Self::Error>;
 }
 
@@ -200,20 +205,22 @@ impl Sub for Amount {
 pub struct Progress {
     /// What was drawn.
     pub drawn: Amount,
-    /// What lies behind that, and was not drawn.
+    /// What was not drawn because it can change no pixel: it lies behind what was drawn, or beside the
+    /// picture.
     pub skipped: Amount,
     /// What is still to be drawn.
     pub left: Amount,
     /// What the stages dropped.
     pub culled: Amount,
-    /// How many records were drawn first because they were seen in the picture before.
+    /// How many records were drawn first because they were seen in the picture before. Their bricks
+    /// are drawn all the same, unless they are skipped.
     pub recalled: u64,
     /// The number of pixels that anything left could still change, at most.
     pub open: u64,
 }
 
 impl Progress {
-    /// Whether nothing that is left can change any pixel.
+    /// Whether nothing that is left can change any pixel: the picture is complete.
     #[must_use]
     pub const fn settled(&self) -> bool {
         self.open == 0

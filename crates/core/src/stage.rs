@@ -24,8 +24,9 @@ impl<G: ?Sized> Copy for Frame<'_, G> {}
 
 /// Narrows or orders the bricks in play.
 ///
-/// A stage must never drop a brick that can be seen. Tuples of stages are stages and run from left
-/// to right; so are closures.
+/// What a stage drops is not drawn. So a stage that is only there to save time must not drop a brick
+/// that can be seen; one that chooses what to show may. Tuples of two or three stages are stages and
+/// run from left to right; so are closures.
 ///
 /// # Examples
 ///
@@ -46,13 +47,15 @@ impl<G: ?Sized> Copy for Frame<'_, G> {}
 /// }
 /// ```
 pub trait Stage<G: ?Sized> {
-    /// Changes `visible`, which holds bricks of `frame`.
+    /// Drops or orders the bricks of `visible`, before anything is drawn.
+    ///
+    /// At first these are all bricks of `frame`, in the order in which it holds them.
     fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible);
 
-    /// Orders anew what is left while a picture is being drawn, after the renderer has looked how
+    /// Drops or orders what is left while a picture is being drawn, after the renderer has looked how
     /// many pixels each brick can still change ([`VisibleBrick::open`](crate::VisibleBrick::open)).
     ///
-    /// By default the order stays.
+    /// By default everything stays as it is. It is not called for renderers that do not look.
     fn refine(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
         let _ = (frame, visible);
     }

@@ -144,6 +144,10 @@ impl Band<'_> {
     #[inline]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
     fn is_hidden(&mut self, center: DVec3, radius: f64, nearest: f64) -> bool {
+        // It may be negative where no grid has looked at it.
+        if radius < 0.0 {
+            return true;
+        }
         let Some([columns, rows]) = self.camera.outline(center, radius) else {
             return false;
         };

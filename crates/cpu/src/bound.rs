@@ -12,7 +12,8 @@ slopes of the tangents from the eye to a ball at `(c, z)` on one screen axis, wi
 
 which needs neither a root nor a second division; the other side is its mirror. Over the hull the
 largest slope is that of a corner. The bound is grown by [`SLACK_PIXELS`], ten times as much as the
-box of a single sphere, so no sphere's box reaches beyond that of its brick.
+box of a single sphere, and by the rounding of its corners, so no sphere's box reaches beyond that of
+its brick.
 
 Bricks that reach to the near plane or that are nearer than [`DEPTH_RADII_MIN`] radii may cover
 anything. They are few.
@@ -61,6 +62,8 @@ pub(crate) struct Bounder<'a> {
     /// Half a picture, in units of slopes, and pixels per such unit.
     middle: [f64; 2],
     per_slope: f64,
+    /// The sizes of what is the same in all boxes, for the rounding.
+    largest: f64,
 }
 
 impl<'a> Bounder<'a> {
@@ -73,6 +76,7 @@ impl<'a> Bounder<'a> {
             last: [width - 1.0, height - 1.0],
             middle: [width * 0.5 - 0.5, height * 0.5 - 0.5],
             per_slope: 1.0 / camera.pixel(),
+            largest: camera.place(DVec3::ZERO).abs().element_sum(),
         }
     }
 
@@ -80,8 +84,11 @@ impl<'a> Bounder<'a> {
     #[inline]
     pub(crate) fn bound(&self, bounds: &Aabb, radius: f32) -> ScreenBound {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        let (half, radius) = ((max - min) * 0.5, f64::from(radius));
+        let half = (max - min) * 0.5;
         let center = self.camera.place(min + half);
+        // Far from an origin or the eye, corners are rounded otherwise than the balls that lie there.
+        let sizes = self.largest + (min + half).abs().element_sum() + half.element_sum();
+        let radius = f64::from(radius) + 16.0 * f64::EPSILON * sizes;
         let near = self.camera.near();
         // How far the box reaches along each axis of the camera.
         let reach = half.x * self.axes.x_axis.abs().z
@@ -249,6 +256,16 @@ mod tests {
                 prop_assert!(f64::from(bound.nearest) <= seen);
             }
         }
+    }
+
+    #[test]
+    fn depths_are_rounded_to_the_front() {
+        for x in [0.1, -0.1, 1e300, -1e300, 1e-300, -1e-300, f64::INFINITY, 1.0, 0.0, 16_777_217.0]
+        {
+            assert!(f64::from(below(x)) <= x, "{x}");
+        }
+        assert_eq!(below(16_777_217.0), 16_777_216.0);
+        assert_eq!(below(1e300), f32::MAX);
     }
 
     #[test]

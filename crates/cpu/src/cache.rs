@@ -82,6 +82,7 @@ mod tests {
         expected.dedup();
         assert_eq!(visible(&ids), expected);
         assert_eq!(visible(&[NO_RECORD; 5]), []);
+        assert_eq!(visible(&[3, NO_RECORD, 3, 1, NO_RECORD]), [1, 3]);
     }
 
     #[test]

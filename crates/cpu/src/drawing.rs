@@ -115,3 +115,68 @@ fn fill<T: Copy>(values: &mut Vec<T>, count: usize, value: T) {
     values.clear();
     values.resize(count, value);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::band::Members;
+    use glam::DVec3;
+    use proptest::prelude::*;
+    use puncta_core::Sphere;
+
+    fn view(width: u32, height: u32, is_perspective: bool) -> View {
+        let view = View::look_at(DVec3::new(0.1, 0.2, 4.0), DVec3::ZERO, DVec3::Y).unwrap();
+        let view = view.with_size(width, height).unwrap();
+        if is_perspective { view } else { view.with_orthographic(3.0).unwrap() }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(300))]
+
+        /// After any drawing, in a picture after another one, tiles know the largest of their depths,
+        /// and hide what these hide.
+        #[test]
+        fn fresh_tiles_hold_the_largest_depths(
+            sizes in [(1_u32..100, 1_u32..150), (1_u32..100, 1_u32..150)],
+            is_perspective in any::<bool>(),
+            spheres in prop::collection::vec(
+                ([-1.5_f32..1.5, -1.5_f32..1.5, -1.0_f32..3.5], 0.01_f32..1.0),
+                0..20,
+            ),
+        ) {
+            let records: Vec<Sphere> =
+                spheres.iter().map(|&(center, radius)| Sphere { center, radius }).collect();
+            let [first, view] = sizes.map(|(width, height)| view(width, height, is_perspective));
+            let mut drawing = Drawing::new(&first);
+            for view in [first, view] {
+                drawing.restart(&view);
+                let camera = Camera::new(&view, DVec3::ZERO);
+                let last = camera.size().map(|side| u16::try_from(side - 1).unwrap());
+                let bound = ScreenBound { columns: [0, last[0]], rows: [0, last[1]], nearest: 0.0 };
+                for range in [0..records.len() / 2, records.len() / 2..records.len()] {
+                    let [start, end] = [range.start, range.end].map(|i| u32::try_from(i).unwrap());
+                    let members = Members::All(start..end);
+                    let pieces = [Piece { bound, members, is_drawn: false.into() }];
+                    drawing.draw((&camera, None), &records, &pieces);
+                    drawing.freshen();
+                    let across = drawing.stride / tiles::SIDE;
+                    for (tile, &deepest) in drawing.deepest.iter().enumerate() {
+                        let (x, y) = (tile % across * tiles::SIDE, tile / across * tiles::SIDE);
+                        let rows = drawing.depth.chunks(drawing.stride).skip(y).take(tiles::SIDE);
+                        let largest = rows
+                            .flat_map(|row| &row[x..x + tiles::SIDE])
+                            .fold(f32::NEG_INFINITY, |a, &b| a.max(b));
+                        // Tiles that lie beyond the picture are never asked.
+                        prop_assert!(deepest == largest || largest == f32::NEG_INFINITY);
+                    }
+                    let tile = ScreenBound { columns: [last[0]; 2], rows: [last[1]; 2], nearest: 4.0 };
+                    let at = (drawing.deepest.len() / across - 1) * across;
+                    let deepest = drawing.deepest[at + usize::from(last[0]) / tiles::SIDE];
+                    prop_assert_eq!(drawing.hides(&tile), deepest < 4.0);
+                    let equal = ScreenBound { nearest: deepest, ..tile };
+                    prop_assert!(!drawing.hides(&equal));
+                }
+            }
+        }
+    }
+}

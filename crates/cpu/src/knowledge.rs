@@ -10,17 +10,36 @@ use crate::{
     camera::Camera,
     drawing::Drawing,
 };
+use glam::DVec3;
 use puncta_core::Content;
 use rayon::prelude::*;
 
 /// The bound of what cannot be seen.
 const HIDDEN: ScreenBound = ScreenBound { columns: [1, 0], rows: [1, 0], nearest: f32::INFINITY };
 
+/// The place in the world and in memory of bricks and blocks, and how many there are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key {
+    origin: DVec3,
+    bricks: (usize, usize),
+    blocks: (usize, usize),
+}
+
+impl Key {
+    fn of<R>(content: &Content<'_, R>) -> Self {
+        Self {
+            origin: content.scene.origin,
+            bricks: (content.bricks.as_ptr() as usize, content.bricks.len()),
+            blocks: (content.blocks.as_ptr() as usize, content.blocks.len()),
+        }
+    }
+}
+
 /// The bounds of bricks and blocks.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Knowledge {
-    /// Where the bricks are that this is about, and how many.
-    content: (usize, usize),
+    /// What this is about.
+    content: Option<Key>,
     /// By brick: unknown, known, or empty if it cannot be seen.
     bricks: Vec<ScreenBound>,
     blocks: Vec<ScreenBound>,
@@ -29,20 +48,20 @@ pub(crate) struct Knowledge {
 impl Knowledge {
     /// Forgets everything: another picture begins.
     pub(crate) fn clear(&mut self) {
-        self.content = (0, 0);
+        self.content = None;
         self.bricks.clear();
         self.blocks.clear();
     }
 
     /// Makes room for these bricks.
     pub(crate) fn prepare<R>(&mut self, content: &Content<'_, R>, camera: &Camera) {
-        let key = (content.bricks.as_ptr() as usize, content.bricks.len());
-        if self.content == key && self.bricks.len() == key.1 {
+        let key = Key::of(content);
+        if self.content == Some(key) {
             return;
         }
-        self.content = key;
+        self.content = Some(key);
         self.bricks.clear();
-        self.bricks.resize(key.1, ScreenBound::UNKNOWN);
+        self.bricks.resize(content.bricks.len(), ScreenBound::UNKNOWN);
         let bounder = Bounder::new(camera);
         self.blocks.clear();
         let bound = |block: &puncta_core::Block| bounder.bound(&block.bounds, block.radius_max);
@@ -80,10 +99,10 @@ impl Knowledge {
     pub(crate) fn hide_blocks<R>(&mut self, content: &Content<'_, R>, drawing: &Drawing) {
         let hides = |bound: &ScreenBound| !bound.is_empty() && drawing.hides(bound);
         let hidden: Vec<bool> = self.blocks.par_iter().with_min_len(64).map(hides).collect();
-        for (index, _) in hidden.iter().enumerate().filter(|(_, hidden)| **hidden) {
-            self.blocks[index] = HIDDEN;
-            let bricks = &content.blocks[index].bricks;
-            let range = bricks.start as usize..bricks.end as usize;
+        let blocks = self.blocks.iter_mut().zip(content.blocks).zip(hidden);
+        for ((bound, block), _) in blocks.filter(|(_, is_hidden)| *is_hidden) {
+            *bound = HIDDEN;
+            let range = block.bricks.start as usize..block.bricks.end as usize;
             if let Some(bricks) = self.bricks.get_mut(range) {
                 bricks.fill(HIDDEN);
             }

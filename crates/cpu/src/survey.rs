@@ -160,3 +160,107 @@ impl Look<'_> {
         (open, gain)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DVec3, Vec3};
+    use proptest::prelude::*;
+    use puncta_core::{Aabb, Brick, View, Visible};
+
+    const SIZE: [u16; 2] = [29, 21];
+
+    /// A few depths, so that many are equal.
+    fn depths() -> impl Strategy<Value = f32> {
+        prop_oneof![Just(1.0_f32), Just(2.0), Just(2.5), Just(3.0), Just(f32::INFINITY)]
+    }
+
+    fn bounds() -> impl Strategy<Value = ScreenBound> {
+        let ends =
+            |count: u16| (0..count, 0..count).prop_map(|(a, b)| [a.min(b), a.max(b)]).boxed();
+        let ends = |axis: usize| prop_oneof![9 => ends(SIZE[axis]), 1 => Just([1, 0])];
+        let nearest = prop_oneof![Just(0.5_f32), Just(1.0), Just(2.0), Just(2.5)];
+        (ends(0), ends(1), nearest).prop_map(|(columns, rows, nearest)| ScreenBound {
+            columns,
+            rows,
+            nearest,
+        })
+    }
+
+    /// A picture in which rectangles were drawn.
+    fn drawing(view: &View, drawn: &[(ScreenBound, f32)]) -> Drawing {
+        let mut drawing = Drawing::new(view);
+        let (stride, across) = (drawing.stride, drawing.stride / SIDE);
+        for (bound, depth) in drawn.iter().filter(|(bound, _)| !bound.is_empty()) {
+            for row in bound.rows[0]..=bound.rows[1] {
+                let row = &mut drawing.depth[usize::from(row) * stride..];
+                for pixel in &mut row[bound.columns[0].into()..=bound.columns[1].into()] {
+                    *pixel = pixel.min(*depth);
+                }
+            }
+        }
+        drawing.deepest.fill(f32::NEG_INFINITY);
+        for (pixel, &depth) in drawing.depth.iter().enumerate() {
+            let deepest =
+                &mut drawing.deepest[pixel / stride / SIDE * across + pixel % stride / SIDE];
+            *deepest = deepest.max(depth);
+        }
+        drawing
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(600))]
+
+        /// The open pixels of a brick are those of a look at all; the open set holds them all, and
+        /// nothing in tiles without any.
+        #[test]
+        fn open_pixels_are_those_of_all_pixels(
+            drawn in prop::collection::vec((bounds(), depths()), 0..6),
+            bounds in prop::collection::vec(bounds(), 0..6),
+        ) {
+            let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
+            let view = view.with_size(SIZE[0].into(), SIZE[1].into()).unwrap();
+            let drawing = drawing(&view, &drawn);
+            // Its far depth is 4, or nearly so.
+            let place = Aabb { min: Vec3::splat(1.0), max: Vec3::splat(1.0) };
+            let brick = Brick { records: 0..0, bounds: place, radius_max: 0.0, density: 0.0 };
+            let bricks = vec![brick; bounds.len()];
+            let mut left = Visible::all(&bricks, DVec3::ZERO, &view).bricks;
+            let outlook = survey(&drawing, &mut left, &bounds);
+            let pixels = || {
+                (0..SIZE[1]).flat_map(|row| (0..SIZE[0]).map(move |column| (column, row)))
+            };
+            let depth = |(column, row): (u16, u16)| {
+                drawing.depth[usize::from(row) * drawing.stride + usize::from(column)]
+            };
+            let is_open = |bound: &ScreenBound, at: (u16, u16)| {
+                let holds = |[first, last]: [u16; 2], at: u16| first <= at && at <= last;
+                holds(bound.columns, at.0) && holds(bound.rows, at.1) && depth(at) >= bound.nearest
+            };
+            for (brick, bound) in left.iter().zip(&bounds) {
+                let open: Vec<_> = pixels().filter(|&at| is_open(bound, at)).collect();
+                prop_assert_eq!(brick.open() as usize, open.len());
+                let gain = |&at: &(u16, u16)| {
+                    let share = (depth(at) - bound.nearest) / (brick.far() - bound.nearest);
+                    if depth(at) == f32::INFINITY { 1.0 } else { 0.5 * share.min(1.0) }
+                };
+                let gain = open.iter().map(gain).sum::<f32>();
+                prop_assert!((brick.gain() - gain).abs() <= 1e-3 * (1.0 + gain));
+            }
+            let tile = |at: (u16, u16)| (usize::from(at.0) / SIDE, usize::from(at.1) / SIDE);
+            let mut count = 0;
+            for at in pixels() {
+                let nearest = bounds
+                    .iter()
+                    .filter(|b| pixels().any(|other| tile(other) == tile(at) && is_open(b, other)))
+                    .map(|bound| bound.nearest)
+                    .reduce(f32::min);
+                let expected = nearest.is_some_and(|nearest| depth(at) >= nearest);
+                let found = outlook.is_open(&drawing, at.0.into(), at.1.into());
+                prop_assert_eq!(found, expected);
+                count += u64::from(found);
+            }
+            prop_assert_eq!(outlook.count(&drawing), count);
+        }
+    }
+}

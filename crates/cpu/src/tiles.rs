@@ -145,3 +145,95 @@ fn part((x, y): (usize, usize), rect: &Rect) -> Rect {
     };
     Rect { columns: clip(rect.columns, x), rows: clip(rect.rows, y) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A question: a bound, and a sphere's pixels if it is one of spheres.
+    type Question = ([u16; 2], [u16; 2], f32, bool);
+
+    const STRIDE: usize = 32;
+    const FIRST_ROW: usize = 16;
+
+    /// A few depths, so that many are equal.
+    fn depths() -> impl Strategy<Value = f32> {
+        prop_oneof![Just(1.0_f32), Just(2.0), Just(2.5), Just(3.0), Just(f32::INFINITY)]
+    }
+
+    fn ends(count: usize) -> impl Strategy<Value = [u16; 2]> {
+        let count = u16::try_from(count).unwrap();
+        (0..count, 0..count).prop_map(|(a, b)| [a.min(b), a.max(b)])
+    }
+
+    fn question(rows: usize) -> impl Strategy<Value = Question> {
+        (ends(STRIDE), ends(FIRST_ROW + rows + 9), depths(), any::<bool>())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        /// Whatever is drawn between questions, the answers are those of a look at all pixels.
+        #[test]
+        fn answers_are_those_of_the_pixels(
+            rows in 1_usize..20,
+            rounds in prop::collection::vec((question(20), question(20)), 1..12),
+        ) {
+            let across = STRIDE / SIDE;
+            let count = across * rows.div_ceil(SIDE);
+            let (mut deepest, mut stale) = (vec![f32::INFINITY; count], vec![false; count]);
+            let mut tiles = Tiles {
+                first_row: FIRST_ROW,
+                stride: STRIDE,
+                deepest: &mut deepest,
+                stale: &mut stale,
+            };
+            let mut depth = vec![f32::INFINITY; STRIDE * rows];
+            let end = FIRST_ROW + rows - 1;
+            for (draw, ask) in rounds {
+                // Draws a rectangle.
+                let clip = |rows: [u16; 2]| {
+                    let rows = rows.map(usize::from);
+                    let rows = [rows[0].max(FIRST_ROW), rows[1].min(end)];
+                    (rows[0] <= rows[1]).then_some(rows)
+                };
+                let columns = draw.0.map(usize::from);
+                if let Some(rows) = clip(draw.1) {
+                    tiles.touch(columns, rows);
+                    for row in rows[0]..=rows[1] {
+                        for pixel in &mut depth[(row - FIRST_ROW) * STRIDE..][columns[0]..=columns[1]] {
+                            *pixel = pixel.min(draw.2);
+                        }
+                    }
+                }
+                let (columns, nearest) = (ask.0.map(usize::from), ask.2);
+                let all = |columns: [usize; 2], rows: [usize; 2]| {
+                    (rows[0]..=rows[1]).all(|row| {
+                        let row = &depth[(row - FIRST_ROW) * STRIDE..];
+                        row[columns[0]..=columns[1]].iter().all(|&depth| depth < nearest)
+                    })
+                };
+                if ask.3 {
+                    let bound = ScreenBound { columns: ask.0, rows: ask.1, nearest };
+                    let expected = clip(ask.1).is_none_or(|rows| all(columns, rows));
+                    prop_assert_eq!(tiles.hides(&bound, &depth), expected);
+                } else if let Some(rows) = clip(ask.1) {
+                    let around = |[a, b]: [usize; 2]| [a / SIDE * SIDE, b / SIDE * SIDE + SIDE - 1];
+                    let whole = around(rows);
+                    let expected = all(around(columns), [whole[0], whole[1].min(end)]);
+                    let found = tiles.hide_around(columns, rows, (nearest, &depth));
+                    prop_assert_eq!(found, expected);
+                }
+            }
+            tiles.freshen_all(&depth);
+            for (tile, deepest) in deepest.iter().enumerate() {
+                let (x, y) = (tile % across * SIDE, tile / across * SIDE);
+                let largest = (y..(y + SIDE).min(rows))
+                    .flat_map(|row| depth[row * STRIDE + x..][..SIDE].to_vec())
+                    .fold(f32::NEG_INFINITY, f32::max);
+                prop_assert_eq!(*deepest, largest);
+            }
+        }
+    }
+}
