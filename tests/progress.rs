@@ -38,7 +38,8 @@ impl<G: ?Sized> Stage<G> for Any {
 
     fn refine(&mut self, _frame: &Frame<'_, G>, visible: &mut Visible) {
         if let Self::MostOpen = self {
-            visible.bricks.sort_by_key(|brick| (u32::MAX - brick.open(), brick.index()));
+            let most = |brick: &VisibleBrick| (!brick.gain().to_bits(), brick.index());
+            visible.bricks.sort_by_key(most);
         }
     }
 }

@@ -119,7 +119,6 @@ pub struct VisibleBrick {
     index: u32,
     near: f32,
     far: f32,
-    open: u32,
     gain: f32,
 }
 
@@ -145,26 +144,26 @@ impl VisibleBrick {
         self.far
     }
 
-    /// How many pixels it can still change, at most; [`u32::MAX`] while nobody has looked.
+    /// Whether it can still change any pixel, as far as anybody has looked.
     #[must_use]
     #[inline]
-    pub const fn open(&self) -> u32 {
-        self.open
+    pub const fn is_open(&self) -> bool {
+        self.gain != 0.0
     }
 
     /// How much of the picture it may be expected to change, in pixels: those where there is nothing
     /// yet count fully, others by how far the brick reaches in front of what is there, and at most
-    /// half. +inf while nobody has looked.
+    /// half. 0 if it can change none; +inf while nobody has looked.
     #[must_use]
     #[inline]
     pub const fn gain(&self) -> f32 {
         self.gain
     }
 
-    /// Notes how many pixels it can still change, at most, and how much it is expected to.
-    pub const fn set_open(&mut self, pixels: u32, gain: f32) {
-        self.open = pixels;
-        self.gain = gain;
+    /// Notes how much it may be expected to change, in pixels: 0 only if that it can change none is
+    /// certain.
+    pub const fn set_gain(&mut self, pixels: f32) {
+        self.gain = pixels;
     }
 }
 
@@ -192,7 +191,7 @@ impl Visible {
             let slack = 8.0 * f64::EPSILON * (distance + terms + reach);
             let (near, far) = (middle - reach - slack, middle + reach + slack);
             let (near, far) = (below(near), -below(-far));
-            VisibleBrick { index, near, far, open: u32::MAX, gain: f32::INFINITY }
+            VisibleBrick { index, near, far, gain: f32::INFINITY }
         };
         self.bricks.clear();
         self.bricks.extend((0_u32..).zip(bricks).map(place));

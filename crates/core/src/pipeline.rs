@@ -324,7 +324,7 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
         if open == Some(0) {
             visible.bricks.clear();
         } else if open.is_some() {
-            visible.bricks.retain(|brick| brick.open() > 0);
+            visible.bricks.retain(VisibleBrick::is_open);
         }
         let left = Amount::of(content.bricks, &visible.bricks);
         self.progress.skipped += self.progress.left - left;

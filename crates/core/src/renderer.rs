@@ -137,9 +137,9 @@ pub trait Renderer<R: Record> {
     /// Forgets what was seen in the pictures that it drew, which [`Renderer::recall`] would draw.
     fn forget(&mut self) {}
 
-    /// Notes for each of the bricks that are left how many pixels it can still change, at most
-    /// ([`VisibleBrick::set_open`]), and returns how many they can change together. `None`, which is
-    /// the default, says that the renderer does not know.
+    /// Notes for each of the bricks that are left how much it may be expected to change, and whether it
+    /// can change anything ([`VisibleBrick::set_gain`]), and returns how many pixels they can change
+    /// together, at most. `None`, which is the default, says that the renderer does not know.
     ///
     /// # Errors
     ///

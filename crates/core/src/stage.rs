@@ -53,7 +53,7 @@ pub trait Stage<G: ?Sized> {
     fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible);
 
     /// Drops or orders what is left while a picture is being drawn, after the renderer has looked how
-    /// many pixels each brick can still change ([`VisibleBrick::open`](crate::VisibleBrick::open)).
+    /// much each brick may still change ([`VisibleBrick::gain`](crate::VisibleBrick::gain)).
     ///
     /// By default everything stays as it is. It is not called for renderers that do not look.
     fn refine(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {

@@ -1,8 +1,8 @@
 /*!
 The survey: what the bricks that are left can still change.
 
-A pixel is open for a brick if it lies in the brick's bound and is not nearer than it. How many pixels
-are open for a brick tells how much there is to gain from drawing it, and none at all that it need not
+A pixel is open for a brick if it lies in the brick's bound and is not nearer than it. The pixels that
+are open for a brick tell how much there is to gain from drawing it, and if there are none it need not
 be drawn. For all bricks together, each tile notes the nearest of those that can change any of its
 pixels: what is nearer than that can no longer change. So the open set is a little larger than the
 union of the bricks' pixels, never smaller.
@@ -74,8 +74,7 @@ pub(crate) fn survey(
         .fold(empty, |mut nearest, (bricks, bounds)| {
             let view = Look { drawing, shallowest: &shallowest };
             for (brick, bound) in bricks.iter_mut().zip(bounds) {
-                let (open, gain) = view.open(brick, bound, &mut nearest);
-                brick.set_open(open, gain);
+                brick.set_gain(view.gain(brick, bound, &mut nearest));
             }
             nearest
         })
@@ -107,16 +106,16 @@ struct Look<'a> {
 }
 
 impl Look<'_> {
-    /// How many pixels are open for a brick, and what it may gain; notes its depth in their tiles.
-    fn open(&self, brick: &VisibleBrick, bound: &ScreenBound, nearest: &mut [f32]) -> (u32, f32) {
+    /// What a brick may gain, 0 if no pixel is open for it; notes its depth in the tiles of those.
+    fn gain(&self, brick: &VisibleBrick, bound: &ScreenBound, nearest: &mut [f32]) -> f32 {
         if bound.is_empty() {
-            return (0, 0.0);
+            return 0.0;
         }
         let across = self.drawing.stride / SIDE;
         let [left, right] = bound.columns.map(usize::from);
         let [top, bottom] = bound.rows.map(usize::from);
         let scale = 1.0 / (brick.far() - bound.nearest);
-        let (mut sum, mut gain) = (0, 0.0);
+        let (mut is_open, mut gain) = (false, 0.0);
         for y in top / SIDE..=bottom / SIDE {
             let rows = [top.max(y * SIDE), bottom.min(y * SIDE + SIDE - 1)];
             for x in left / SIDE..=right / SIDE {
@@ -133,12 +132,13 @@ impl Look<'_> {
                 };
                 if open > 0 {
                     nearest[tile] = nearest[tile].min(bound.nearest);
-                    sum += open;
+                    is_open = true;
                     gain += more;
                 }
             }
         }
-        (u32::try_from(sum).unwrap_or(u32::MAX), gain)
+        // What can change something has something to gain, even where the sum is 0 or NaN.
+        if gain > 0.0 || !is_open { gain } else { f32::MIN_POSITIVE }
     }
 
     /// The open pixels of a rectangle, and what they may gain, for a brick that begins at a depth
@@ -239,7 +239,7 @@ mod tests {
             };
             for (brick, bound) in left.iter().zip(&bounds) {
                 let open: Vec<_> = pixels().filter(|&at| is_open(bound, at)).collect();
-                prop_assert_eq!(brick.open() as usize, open.len());
+                prop_assert_eq!(brick.is_open(), !open.is_empty());
                 let gain = |&at: &(u16, u16)| {
                     let share = (depth(at) - bound.nearest) / (brick.far() - bound.nearest);
                     if depth(at) == f32::INFINITY { 1.0 } else { 0.5 * share.min(1.0) }
