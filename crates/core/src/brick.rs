@@ -179,36 +179,49 @@ impl Visible {
     /// Makes this the list of [`Visible::all`], in the memory that it has.
     pub fn refill(&mut self, bricks: &[Brick], origin: DVec3, view: &View) {
         let to_origin = origin - view.eye();
-        let distance = to_origin.length();
-        let (forward, reaching) = (view.forward(), view.forward().abs());
+        let (forward, base) = (view.forward(), view.forward().dot(to_origin));
+        let distance = to_origin.abs().element_sum();
         let place = |(index, brick): (u32, &Brick)| {
-            let (min, max) = (brick.bounds.min.as_dvec3(), brick.bounds.max.as_dvec3());
-            let half = (max - min) * 0.5;
-            let center = to_origin + (min + half);
-            let (middle, terms) = (forward.dot(center), reaching.dot(center.abs()));
-            let reach = reaching.dot(half) + f64::from(brick.radius_max);
-            // Twice the rounding of the terms above, so that the bounds hold.
-            let slack = 8.0 * f64::EPSILON * (distance + terms + reach);
-            let (near, far) = (middle - reach - slack, middle + reach + slack);
-            let (near, far) = (below(near), -below(-far));
-            VisibleBrick { index, near, far, gain: f32::INFINITY }
+            let (a, b) =
+                (forward * brick.bounds.min.as_dvec3(), forward * brick.bounds.max.as_dvec3());
+            let (x, y, z) = (ordered(a.x, b.x), ordered(a.y, b.y), ordered(a.z, b.z));
+            let radius = f64::from(brick.radius_max);
+            let size = |[low, high]: [f64; 2]| if -low > high { -low } else { high };
+            // Twice the rounding of the terms below, so that the bounds hold.
+            let slack = 8.0 * f64::EPSILON * (distance + size(x) + size(y) + size(z) + radius);
+            let near = base + (x[0] + y[0] + z[0]) - (radius + slack);
+            let far = base + (x[1] + y[1] + z[1]) + (radius + slack);
+            VisibleBrick { index, near: below(near), far: -below(-far), gain: f32::INFINITY }
         };
         self.bricks.clear();
         self.bricks.extend((0_u32..).zip(bricks).map(place));
     }
 }
 
-/// The largest `f32` that is not above a number; that below all numbers for NaN.
+/// Two numbers in ascending order; of a number and NaN, which comes of an infinite side across the line
+/// of sight, twice the number.
+#[inline]
+fn ordered(a: f64, b: f64) -> [f64; 2] {
+    let b = if b.is_nan() { a } else { b };
+    [if a < b { a } else { b }, if a > b { a } else { b }]
+}
+
+/// An `f32` that is not above a number, and at most two units in the last place below it; that below
+/// all numbers for NaN.
+///
+/// Which way a number is rounded is as good as random, so there is no branch for it.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "rounding is what is meant")]
 fn below(x: f64) -> f32 {
-    let rounded = x as f32;
-    if f64::from(rounded) <= x {
+    const UNIT: f64 = f32::EPSILON as f64;
+    // More than half a unit, even where numbers are no longer normal.
+    let rounded = (x - x.abs() * UNIT - 1.5e-45) as f32;
+    if rounded <= f32::MAX {
         rounded
-    } else if x.is_nan() {
+    } else if rounded.is_nan() {
         f32::NEG_INFINITY
     } else {
-        rounded.next_down()
+        f32::MAX
     }
 }
 
@@ -234,10 +247,28 @@ mod tests {
     }
 
     #[test]
+    fn infinite_boxes_may_be_anywhere() {
+        let view = View::look_at(DVec3::ZERO, DVec3::X, DVec3::Z).unwrap();
+        let bounds = |bounds: Aabb| {
+            let brick = Brick { records: 0..0, bounds, radius_max: 1.0, density: 0.0 };
+            let visible = Visible::all(&[brick], DVec3::ZERO, &view).bricks[0];
+            [visible.near(), visible.far()]
+        };
+        let everywhere = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+        assert_eq!(bounds(everywhere), [f32::NEG_INFINITY, f32::INFINITY]);
+        // Across the line of sight: its depth is known, or taken to be anything.
+        for (low, high) in [(f32::NEG_INFINITY, 5.0), (5.0, f32::INFINITY)] {
+            let sheet = Aabb { min: Vec3::new(2.0, low, 0.0), max: Vec3::new(3.0, high, 0.0) };
+            let [near, far] = bounds(sheet);
+            assert!(near <= 1.0 && far >= 4.0, "{near} {far}");
+        }
+    }
+
+    #[test]
     fn depth_bounds_are_rounded_outwards() {
         for x in [0.1, -0.1, 1e300, -1e300, 1e-300, -1e-300, f64::INFINITY, 1.0, 0.0] {
-            assert!(f64::from(below(x)) <= x && f64::from(below(x).next_up()) > x || x > 1e299);
             assert!(f64::from(below(x)) <= x, "{x}");
+            assert!(f64::from(below(x).next_up().next_up()) >= x || x > 1e299, "{x}");
         }
         assert_eq!(below(1e300), f32::MAX);
         assert_eq!(below(f64::NAN), f32::NEG_INFINITY);
