@@ -10,6 +10,7 @@ graph fits into the cache, and sums are hardly ever equal. Buffers are kept.
 */
 
 use puncta_core::VisibleBrick;
+use std::ops::Range;
 
 /// The most bits of a digit: its counts should stay in the first cache.
 const DIGIT_BITS: u32 = 11;
@@ -44,20 +45,26 @@ impl Radix {
             rekey(&mut self.pairs, key);
         }
         by_keys(&mut self.pairs, &mut self.spare);
-        let (mut pairs, mut spare) = (self.pairs.as_mut_slice(), self.spare.as_mut_slice());
-        while let Some(&(key, _)) = pairs.first() {
-            let end = pairs.iter().position(|&(other, _)| other != key).unwrap_or(pairs.len());
-            let (run, rest) = pairs.split_at_mut(end);
-            if run.len() > 1 {
-                rekey(run, |place| ascending(bricks[place].near()));
-                by_keys(run, &mut spare[..end]);
-            }
-            (pairs, spare) = (rest, &mut spare[end..]);
+        let mut start = 0;
+        while let Some(next) = ties(&self.pairs, start) {
+            let run = &mut self.pairs[next.clone()];
+            rekey(run, |place| ascending(bricks[place].near()));
+            by_keys(run, &mut self.spare[next.clone()]);
+            start = next.end;
         }
         self.sorted.clear();
         self.sorted.extend(self.pairs.iter().map(|&(_, place)| bricks[place as usize]));
         std::mem::swap(bricks, &mut self.sorted);
     }
+}
+
+/// The next run of pairs with one key, of at least two, from a place on.
+fn ties(pairs: &[Pair], start: usize) -> Option<Range<usize>> {
+    let rest = pairs.get(start..)?;
+    let first = rest.windows(2).position(|pair| pair[0].0 == pair[1].0)?;
+    let key = rest[first].0;
+    let count = rest[first..].iter().take_while(|&&(other, _)| other == key).count();
+    Some(start + first..start + first + count)
 }
 
 /// Gives other keys to pairs.
