@@ -43,5 +43,7 @@ fn culling_keeps_what_reaches_the_view_and_little_else() {
     let false_keeps = [kept - seen, thesis_kept - seen];
     println!("{seen} bricks reach the view; kept in vain: {false_keeps:?} (box, sphere)");
     assert!(seen > 1000);
+    // Each brick that boxes keep is one that spheres keep, as asserted above. How many fewer depends on
+    // the scenes: a seventh when this was written, so a fifth tells when culling has become coarser.
     assert!(false_keeps[0] * 5 < false_keeps[1]);
 }

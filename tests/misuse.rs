@@ -131,16 +131,25 @@ fn what_is_asked_before_a_picture_is_begun_is_an_error() {
 }
 
 /// A renderer whose device fails now and then.
-#[derive(Default)]
 struct Failing {
     inner: CpuRenderer,
     surveys: usize,
+    /// How many pictures can be begun.
+    begins_left: usize,
+}
+
+impl Default for Failing {
+    fn default() -> Self {
+        Self { inner: CpuRenderer::default(), surveys: 0, begins_left: usize::MAX }
+    }
 }
 
 impl Renderer<Sphere> for Failing {
     type Error = puncta::cpu::Error;
 
     fn begin(&mut self, view: &View) -> Result<(), Self::Error> {
+        let failure = puncta::core::Error::NotBegun;
+        self.begins_left = self.begins_left.checked_sub(1).ok_or(failure)?;
         Renderer::<Sphere>::begin(&mut self.inner, view)
     }
 
@@ -186,6 +195,20 @@ fn a_picture_can_follow_one_that_failed() {
     steps.next().unwrap().unwrap();
     assert_eq!(steps.progress().drawn.bricks, 1);
     assert_eq!(steps.left().len(), 3);
+}
+
+/// A view that cannot be begun leaves nothing to draw, and no complete picture either.
+#[test]
+fn a_view_that_cannot_be_drawn_is_not_settled() {
+    let scene = Scene::new(vec![Sphere::new([0.0; 3], 0.5)]);
+    let own = [brick(&scene, 0..1)];
+    let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
+    let view = view.with_size(16, 16).unwrap();
+    let mut pipeline = Pipeline::new((), Failing { begins_left: 1, ..Failing::default() });
+    let mut steps = pipeline.progressive(&scene, &own, &view, 1).unwrap();
+    assert!(steps.look(&view).is_err());
+    assert!(steps.left().is_empty() && steps.next().is_none());
+    assert!(!steps.progress().settled());
 }
 
 /// What was settled in one picture is open in the next one.

@@ -1,8 +1,9 @@
 //! The order of hindsight: by what the finished picture shows of each brick.
 //!
 //! No order can know that before. Taking first the bricks that lower the squared error of the empty
-//! picture the most, for each of their records, is about the best that an order of whole bricks can
-//! do; so it tells how much there is to gain over the others.
+//! picture the most, for each of their records, has the exact picture first of all orders of whole
+//! bricks, and tells about how much there is to gain before. It is no bound for pictures that are nearly
+//! right: a pixel that shows a neighbor for now often has nearly the color that it gets.
 
 use crate::compare::{Sketch, Target};
 use anyhow::Result;

@@ -230,6 +230,8 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
         let begun = content.validate(&visible.bricks).map_err(D::Error::from);
         if let Err(error) = begun.and_then(|()| renderer.begin(view)) {
             visible.bricks.clear();
+            // Nothing is left, but the picture of this view is not complete.
+            self.progress.open = self.pixels();
             return Err(error);
         }
         stages.apply(&Frame { view, origin, bricks: self.bricks }, visible);
