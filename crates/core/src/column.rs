@@ -8,7 +8,15 @@ one asks for a `Vec`, which is there for an owned column and is copied for a sha
 with [`std::borrow::Cow`].
 */
 
-use std::{fmt, ops::Deref, slice, sync::Arc};
+use std::{
+    fmt,
+    ops::Deref,
+    slice,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+};
 
 /// Values in a row, one for each record: owned, or shared with whoever holds them.
 ///
@@ -36,7 +44,17 @@ use std::{fmt, ops::Deref, slice, sync::Arc};
 /// ```
 ///
 /// [`Column::shared`] takes any type that lends out a slice, such as a view of a mapped file.
-pub struct Column<T>(Storage<T>);
+pub struct Column<T> {
+    values: Storage<T>,
+    version: u64,
+}
+
+/// The versions that were given out.
+static VERSIONS: AtomicU64 = AtomicU64::new(1);
+
+fn next_version() -> u64 {
+    VERSIONS.fetch_add(1, Ordering::Relaxed)
+}
 
 /// Where values lie.
 enum Storage<T> {
@@ -48,7 +66,7 @@ impl<T> Column<T> {
     /// A column without values.
     #[must_use]
     pub const fn new() -> Self {
-        Self(Storage::Owned(Vec::new()))
+        Self { values: Storage::Owned(Vec::new()), version: 0 }
     }
 
     /// The values that `holder` lends out. They are not copied; `holder` is dropped with the last
@@ -83,20 +101,30 @@ impl<T> Column<T> {
     /// ```
     #[must_use]
     pub fn shared(holder: impl AsRef<[T]> + Send + Sync + 'static) -> Self {
-        Self(Storage::Shared(Arc::new(holder)))
+        Self { values: Storage::Shared(Arc::new(holder)), version: next_version() }
     }
 
     /// Whether somebody else holds the values, so that changing them copies them.
     #[must_use]
     pub const fn is_shared(&self) -> bool {
-        matches!(self.0, Storage::Shared(_))
+        matches!(self.values, Storage::Shared(_))
+    }
+
+    /// A number that changes whenever the values may have changed: columns of the same number hold
+    /// the same values, in this process. So what was made of the values, such as a copy of them on a
+    /// GPU, can be kept as long as the number stays.
+    ///
+    /// Values that a holder changes behind the column's back are not noticed.
+    #[must_use]
+    pub const fn version(&self) -> u64 {
+        self.version
     }
 
     /// The values. For a shared column this is a virtual call.
     #[must_use]
     #[inline]
     pub fn as_slice(&self) -> &[T] {
-        match &self.0 {
+        match &self.values {
             Storage::Owned(values) => values,
             Storage::Shared(holder) => (**holder).as_ref(),
         }
@@ -110,10 +138,11 @@ impl<T: Clone> Column<T> {
     /// Loops take the `Vec` once, before they start.
     #[inline]
     pub fn to_mut(&mut self) -> &mut Vec<T> {
-        if let Storage::Shared(holder) = &self.0 {
-            self.0 = Storage::Owned((**holder).as_ref().to_vec());
+        self.version = next_version();
+        if let Storage::Shared(holder) = &self.values {
+            self.values = Storage::Owned((**holder).as_ref().to_vec());
         }
-        match &mut self.0 {
+        match &mut self.values {
             Storage::Owned(values) => values,
             Storage::Shared(_) => unreachable!("it was copied above"),
         }
@@ -122,7 +151,8 @@ impl<T: Clone> Column<T> {
     /// Drops all values. The room that an owned column has stays for others; a shared one is let go
     /// of.
     pub fn clear(&mut self) {
-        match &mut self.0 {
+        self.version = next_version();
+        match &mut self.values {
             Storage::Owned(values) => values.clear(),
             Storage::Shared(_) => *self = Self::new(),
         }
@@ -131,7 +161,7 @@ impl<T: Clone> Column<T> {
     /// The values. Those of a shared column are copied.
     #[must_use]
     pub fn into_vec(self) -> Vec<T> {
-        match self.0 {
+        match self.values {
             Storage::Owned(values) => values,
             Storage::Shared(holder) => (*holder).as_ref().to_vec(),
         }
@@ -171,10 +201,11 @@ impl<T> Default for Column<T> {
 /// A clone of a shared column shares, too; one of an owned column is a copy.
 impl<T: Clone> Clone for Column<T> {
     fn clone(&self) -> Self {
-        Self(match &self.0 {
+        let values = match &self.values {
             Storage::Owned(values) => Storage::Owned(values.clone()),
             Storage::Shared(holder) => Storage::Shared(Arc::clone(holder)),
-        })
+        };
+        Self { values, version: self.version }
     }
 }
 
@@ -186,7 +217,7 @@ impl<T: fmt::Debug> fmt::Debug for Column<T> {
 
 impl<T> From<Vec<T>> for Column<T> {
     fn from(values: Vec<T>) -> Self {
-        Self(Storage::Owned(values))
+        Self { values: Storage::Owned(values), version: next_version() }
     }
 }
 
@@ -254,7 +285,7 @@ mod tests {
     use super::*;
     use crate::{Error, Scene, Sphere};
     use proptest::prelude::*;
-    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::atomic::AtomicUsize;
 
     /// What can be done with a column.
     #[derive(Clone, Debug)]
@@ -335,6 +366,24 @@ mod tests {
         assert_eq!(changed, [7, 8, 6]);
         assert_eq!(column.as_ptr(), held.as_ptr());
         assert_eq!(*held, [4, 5, 6]);
+    }
+
+    #[test]
+    fn versions_tell_of_changes() {
+        let mut column = Column::from(vec![1, 2]);
+        let first = column.version();
+        let clone = column.clone();
+        assert_eq!((clone.version(), column.len()), (first, 2));
+        column.to_mut()[0] = 5;
+        let second = column.version();
+        assert!(first != second && clone.version() == first);
+        column.extend([3]);
+        assert!(![first, second].contains(&column.version()));
+        assert_ne!(Column::from(vec![1, 2]).version(), first);
+        let emptied = column.version();
+        column.clear();
+        assert_ne!(column.version(), emptied);
+        assert_eq!(Column::<u8>::new().version(), Column::<u8>::default().version());
     }
 
     #[test]

@@ -31,8 +31,10 @@ sphere that holds the camera is not drawn (the ray never enters it), and where t
 a sphere open, one looks through the cut at what lies behind.
 */
 
+mod bound;
 mod bounds;
 mod brick;
+mod camera;
 mod column;
 mod error;
 mod frame;
@@ -48,8 +50,10 @@ mod stage;
 mod view;
 
 pub use crate::{
+    bound::{Bounder, ScreenBound, depth_below},
     bounds::{Aabb, Bounds},
     brick::{Block, Brick, Bricks, Visible, VisibleBrick},
+    camera::{Camera, Hit, ScreenBox, nearest_depth},
     column::Column,
     error::Error,
     image::Image,

@@ -1,13 +1,11 @@
 //! Bands: runs of rows of a picture, each drawn by one thread.
 
 use crate::{
-    bound::{ScreenBound, below},
-    camera::{Camera, ScreenBox},
     disc::{Disc, LANES, Target},
     tiles::Tiles,
 };
 use glam::DVec3;
-use puncta_core::{Amount, Record};
+use puncta_core::{Amount, Camera, Record, ScreenBound, ScreenBox, depth_below, nearest_depth};
 use std::{
     ops::{Range, RangeInclusive},
     sync::atomic::{AtomicBool, Ordering},
@@ -53,12 +51,6 @@ pub(crate) struct Band<'a> {
     pub(crate) depth: &'a mut [f32],
     pub(crate) id: &'a mut [u32],
     pub(crate) tiles: Tiles<'a>,
-}
-
-/// A view depth in front of which a sphere has no point, whether computed in `f64` or in `f32`, whose
-/// rounding errors are a tenth of the margin.
-pub(crate) fn nearest(depth: f64, radius: f64) -> f64 {
-    depth - radius - 1e-6 * (depth.abs() + radius)
 }
 
 /// The first and last of some pixels, which are in the picture.
@@ -119,7 +111,7 @@ impl Band<'_> {
     fn draw_sphere<R: Record>(&mut self, record: &R, id: u32) {
         let center = self.camera.place(record.position().as_dvec3());
         let radius = f64::from(record.radius());
-        let nearest = nearest(center.z, radius);
+        let nearest = nearest_depth(center.z, radius);
         if self.is_hidden(center, radius, nearest) {
             return;
         }
@@ -160,7 +152,7 @@ impl Band<'_> {
         let columns = [columns[0] as usize, columns[1].min(last[0]) as usize];
         let rows = [rows[0].max(first_row) as usize, rows[1].min(last[1]) as usize];
         let is_small = columns[1] - columns[0] <= GLANCE && rows[1] - rows[0] <= GLANCE;
-        is_small && self.tiles.hide_around(columns, rows, (below(nearest), self.depth))
+        is_small && self.tiles.hide_around(columns, rows, (depth_below(nearest), self.depth))
     }
 
     /// Draws a small sphere, eight pixels at a time.

@@ -28,8 +28,8 @@ grows towards the silhouette: `7 / sqrt(q)` in radii. That is more than two unit
 are spheres that are larger or nearer than this reckoning allows.
 */
 
-use crate::{band::nearest, camera::Camera};
 use glam::DVec3;
+use puncta_core::{Camera, nearest_depth};
 use wide::{f32x8, u32x8};
 
 /// How many pixels are drawn at once.
@@ -88,10 +88,10 @@ impl Disc {
     pub(crate) fn new(camera: &Camera, center: DVec3, radius: f64) -> Option<Self> {
         let is_perspective = camera.is_perspective();
         let spread = if is_perspective { center.z } else { 1.0 };
-        let scale = spread * camera.pixel() / radius;
+        let scale = spread * camera.pixel_size() / radius;
         let is_small = scale * RADIUS_PIXELS_MAX >= 1.0;
         let is_far = center.z >= DEPTH_RADII_MIN * radius;
-        let nearest = nearest(center.z, radius);
+        let nearest = nearest_depth(center.z, radius);
         if !(is_small && is_far && nearest > camera.near()) {
             return None;
         }
@@ -110,7 +110,7 @@ impl Disc {
             depth_rest: (center.z - f64::from(depth)) as f32,
             nearest: nearest as f32,
             doubt: doubt(m.length_squared(), radius / center.z) as f32,
-            step: if is_perspective { camera.pixel() as f32 } else { 0.0 },
+            step: if is_perspective { camera.pixel_size() as f32 } else { 0.0 },
         };
         let is_held = disc.scale.is_normal() && disc.radius.is_normal() && disc.depth.is_normal();
         is_held.then_some(disc)
@@ -236,7 +236,7 @@ mod tests {
                 let camera = Camera::new(&view, DVec3::ZERO);
                 let at = camera.ray(20.0 + 1.37 * f64::from(place), 280.0 - 5.9 * f64::from(place));
                 let center = at.extend(1.0) * 3.0;
-                let radius = center.z * camera.pixel() * 8.0;
+                let radius = center.z * camera.pixel_size() * 8.0;
                 if let Some(disc) = Disc::new(&camera, center, radius) {
                     covered += check(300, &camera, &disc, (center, radius));
                 }

@@ -7,11 +7,9 @@ drawn and what is skipped does not depend on the number of threads.
 
 use crate::{
     band::{Band, Piece},
-    bound::ScreenBound,
-    camera::Camera,
     tiles::{self, Tiles},
 };
-use puncta_core::{NO_RECORD, Record, View};
+use puncta_core::{Camera, NO_RECORD, Record, ScreenBound, View};
 use rayon::prelude::*;
 
 /// The number of bands that is aimed at: some of them show more than others.

@@ -5,13 +5,9 @@ Bounds are found when they are first asked for, and kept for the frame. Blocks o
 together: if a block lies behind what is drawn, so do its bricks, and their bounds are never found.
 */
 
-use crate::{
-    bound::{Bounder, ScreenBound},
-    camera::Camera,
-    drawing::Drawing,
-};
+use crate::drawing::Drawing;
 use glam::DVec3;
-use puncta_core::Content;
+use puncta_core::{Bounder, Camera, Content, ScreenBound};
 use rayon::prelude::*;
 
 /// The bound of what cannot be seen.

@@ -39,9 +39,7 @@ pool. What a pixel shows does not depend on the order of the spheres nor on the 
 */
 
 mod band;
-mod bound;
 mod cache;
-mod camera;
 mod colormap;
 mod disc;
 mod drawing;
@@ -54,7 +52,6 @@ mod survey;
 mod tiles;
 
 pub use crate::{
-    camera::{Camera, Hit},
     colormap::ColorMap,
     error::Error,
     legend::draw_legend,

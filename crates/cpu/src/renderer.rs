@@ -3,14 +3,14 @@
 use crate::{
     Error,
     band::{Members, Piece},
-    bound::ScreenBound,
     cache,
-    camera::Camera,
     drawing::Drawing,
     knowledge::Knowledge,
     survey::{self, Outlook},
 };
-use puncta_core::{Amount, Content, Picture, Record, Renderer, View, VisibleBrick};
+use puncta_core::{
+    Amount, Camera, Content, Picture, Record, Renderer, ScreenBound, View, VisibleBrick,
+};
 use std::sync::atomic::AtomicBool;
 
 /// The share of the bricks that are drawn before blocks are tested for the first time, and the

@@ -10,9 +10,9 @@ have more pixels than the image; then a block of them is averaged for each pixel
 smooths silhouettes.
 */
 
-use crate::{Camera, ColorMap, Error};
+use crate::{ColorMap, Error};
 use glam::{DVec3, Vec3};
-use puncta_core::{Image, NO_RECORD, Picture, Record, Scene, View, inner_range};
+use puncta_core::{Camera, Image, NO_RECORD, Picture, Record, Scene, View, inner_range};
 use rayon::prelude::*;
 
 /// The share of records that may lie outside of a range on either side.

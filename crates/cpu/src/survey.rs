@@ -8,8 +8,8 @@ pixels: what is nearer than that can no longer change. So the open set is a litt
 union of the bricks' pixels, never smaller.
 */
 
-use crate::{bound::ScreenBound, drawing::Drawing, tiles::SIDE};
-use puncta_core::VisibleBrick;
+use crate::{drawing::Drawing, tiles::SIDE};
+use puncta_core::{ScreenBound, VisibleBrick};
 use rayon::prelude::*;
 
 /// How many bricks are looked at in one piece of work.

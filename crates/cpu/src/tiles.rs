@@ -14,7 +14,7 @@ Pixels to the right of the picture, which only fill up its rows, have the depth 
 there, and they are in nobody's way.
 */
 
-use crate::bound::ScreenBound;
+use puncta_core::ScreenBound;
 use wide::f32x8;
 
 /// The side of a tile.

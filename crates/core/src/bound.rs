@@ -19,9 +19,8 @@ Bricks that reach to the near plane or that are nearer than [`DEPTH_RADII_MIN`] 
 anything. They are few.
 */
 
-use crate::camera::Camera;
+use crate::{Aabb, Camera};
 use glam::{DVec3, f64::DMat3};
-use puncta_core::Aabb;
 use wide::f64x4;
 
 /// By how much bounds are grown.
@@ -32,29 +31,35 @@ const DEPTH_RADII_MIN: f64 = 4.0;
 
 /// Some pixels, first and last inclusive, and a depth. Without pixels, a first lies above its last.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ScreenBound {
-    pub(crate) columns: [u16; 2],
-    pub(crate) rows: [u16; 2],
+pub struct ScreenBound {
+    /// The first and the last column.
+    pub columns: [u16; 2],
+    /// The first and the last row.
+    pub rows: [u16; 2],
     /// No surface lies in front of this depth, as it is computed and rounded to `f32`.
-    pub(crate) nearest: f32,
+    pub nearest: f32,
 }
 
 impl ScreenBound {
     /// What is known of nothing.
-    pub(crate) const UNKNOWN: Self = Self { columns: [0; 2], rows: [0; 2], nearest: f32::NAN };
+    pub const UNKNOWN: Self = Self { columns: [0; 2], rows: [0; 2], nearest: f32::NAN };
 
-    pub(crate) const fn is_known(&self) -> bool {
+    /// Whether it is known of what.
+    #[must_use]
+    pub const fn is_known(&self) -> bool {
         !self.nearest.is_nan()
     }
 
-    pub(crate) const fn is_empty(&self) -> bool {
+    /// Whether it has no pixels.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
         self.columns[0] > self.columns[1] || self.rows[0] > self.rows[1]
     }
 }
 
 /// Bounds the boxes of a view.
 #[derive(Clone, Debug)]
-pub(crate) struct Bounder<'a> {
+pub struct Bounder<'a> {
     camera: &'a Camera,
     /// Columns that turn offsets into camera coordinates.
     axes: DMat3,
@@ -67,7 +72,9 @@ pub(crate) struct Bounder<'a> {
 }
 
 impl<'a> Bounder<'a> {
-    pub(crate) fn new(camera: &'a Camera) -> Self {
+    /// For the boxes of a scene before this camera.
+    #[must_use]
+    pub fn new(camera: &'a Camera) -> Self {
         let [width, height] = camera.size().map(f64::from);
         let axis = |offset: DVec3| camera.turn(offset);
         Self {
@@ -75,14 +82,15 @@ impl<'a> Bounder<'a> {
             axes: DMat3::from_cols(axis(DVec3::X), axis(DVec3::Y), axis(DVec3::Z)),
             last: [width - 1.0, height - 1.0],
             middle: [width * 0.5 - 0.5, height * 0.5 - 0.5],
-            per_slope: 1.0 / camera.pixel(),
+            per_slope: 1.0 / camera.pixel_size(),
             largest: camera.place(DVec3::ZERO).abs().element_sum(),
         }
     }
 
     /// The bound of balls of at most this radius around points of a box.
     #[inline]
-    pub(crate) fn bound(&self, bounds: &Aabb, radius: f32) -> ScreenBound {
+    #[must_use]
+    pub fn bound(&self, bounds: &Aabb, radius: f32) -> ScreenBound {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let half = (max - min) * 0.5;
         let center = self.camera.place(min + half);
@@ -96,7 +104,7 @@ impl<'a> Bounder<'a> {
             + half.z * self.axes.z_axis.abs().z;
         let front = center.z - reach;
         let margin = 1e-6 * (center.z.abs() + reach + radius);
-        let nearest = below((front - radius - margin).max(near * (1.0 - 1e-6)));
+        let nearest = depth_below((front - radius - margin).max(near * (1.0 - 1e-6)));
         let everything = ScreenBound {
             columns: [0, whole(self.last[0])],
             rows: [0, whole(self.last[1])],
@@ -183,8 +191,9 @@ fn whole(x: f64) -> u16 {
 
 /// The largest `f32` that is not above a number.
 #[inline]
+#[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "rounding is what is meant")]
-pub(crate) fn below(x: f64) -> f32 {
+pub fn depth_below(x: f64) -> f32 {
     let rounded = x as f32;
     if f64::from(rounded) > x { rounded.next_down() } else { rounded }
 }
@@ -192,10 +201,9 @@ pub(crate) fn below(x: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::band::nearest;
+    use crate::{View, nearest_depth};
     use glam::Vec3;
     use proptest::prelude::*;
-    use puncta_core::View;
 
     fn view(eye: DVec3, opening: f64, is_perspective: bool) -> Option<View> {
         let view = View::look_at(eye, DVec3::new(0.1, 0.2, 0.3), DVec3::Z).ok()?;
@@ -252,7 +260,7 @@ mod tests {
                 };
                 prop_assert!(inside(bound.columns, &screen.columns), "{:?} {:?}", bound, screen);
                 prop_assert!(inside(bound.rows, &screen.rows), "{:?} {:?}", bound, screen);
-                let seen = nearest(center.z, r).max(view.near());
+                let seen = nearest_depth(center.z, r).max(view.near());
                 prop_assert!(f64::from(bound.nearest) <= seen);
             }
         }
@@ -262,10 +270,10 @@ mod tests {
     fn depths_are_rounded_to_the_front() {
         for x in [0.1, -0.1, 1e300, -1e300, 1e-300, -1e-300, f64::INFINITY, 1.0, 0.0, 16_777_217.0]
         {
-            assert!(f64::from(below(x)) <= x, "{x}");
+            assert!(f64::from(depth_below(x)) <= x, "{x}");
         }
-        assert_eq!(below(16_777_217.0), 16_777_216.0);
-        assert_eq!(below(1e300), f32::MAX);
+        assert_eq!(depth_below(16_777_217.0), 16_777_216.0);
+        assert_eq!(depth_below(1e300), f32::MAX);
     }
 
     #[test]

@@ -32,8 +32,8 @@ no difference of nearly equal numbers is taken. A tangent point in front of the 
 by the point where the circle meets that plane.
 */
 
+use crate::View;
 use glam::{DVec2, DVec3};
-use puncta_core::View;
 use std::ops::RangeInclusive;
 
 /// By how much screen boxes are grown: far more than rounding needs, far less than matters.
@@ -75,9 +75,19 @@ pub struct Hit {
 
 /// The columns and rows of the pixels that a sphere may cover. Empty ranges are possible.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct ScreenBox {
-    pub(crate) columns: RangeInclusive<i64>,
-    pub(crate) rows: RangeInclusive<i64>,
+pub struct ScreenBox {
+    /// The columns, from the left.
+    pub columns: RangeInclusive<i64>,
+    /// The rows, from the top.
+    pub rows: RangeInclusive<i64>,
+}
+
+/// A view depth in front of which a sphere has no point, whether computed in `f64` or in `f32`, whose
+/// rounding errors are a tenth of the margin.
+#[must_use]
+#[inline]
+pub fn nearest_depth(center_depth: f64, radius: f64) -> f64 {
+    center_depth - radius - 1e-6 * (center_depth.abs() + radius)
 }
 
 impl Camera {
@@ -109,12 +119,14 @@ impl Camera {
     }
 
     /// The coordinates along right, up and forward of a difference of positions.
-    pub(crate) fn turn(&self, offset: DVec3) -> DVec3 {
+    #[must_use]
+    pub fn turn(&self, offset: DVec3) -> DVec3 {
         DVec3::new(self.right.dot(offset), self.up.dot(offset), self.forward.dot(offset))
     }
 
     /// The number of columns and rows.
-    pub(crate) const fn size(&self) -> [u32; 2] {
+    #[must_use]
+    pub const fn size(&self) -> [u32; 2] {
         [self.width, self.height]
     }
 
@@ -168,7 +180,8 @@ impl Camera {
 
     /// The pixels that a sphere may cover; `None` if it lies in front of the near plane.
     #[inline]
-    pub(crate) fn screen_box(&self, center: DVec3, radius: f64) -> Option<ScreenBox> {
+    #[must_use]
+    pub fn screen_box(&self, center: DVec3, radius: f64) -> Option<ScreenBox> {
         // Written so that NaN is not drawn.
         if !(center.z + radius >= self.near && radius > 0.0) {
             return None;
@@ -198,7 +211,8 @@ impl Camera {
     ///
     /// The bound is that of `bound.rs`, for one ball.
     #[inline]
-    pub(crate) fn outline(&self, center: DVec3, radius: f64) -> Option<[[f64; 2]; 2]> {
+    #[must_use]
+    pub fn outline(&self, center: DVec3, radius: f64) -> Option<[[f64; 2]; 2]> {
         let spread = |middle: f64, pixels: f64| [middle - pixels, middle + pixels];
         if !self.is_perspective {
             let pixels = radius * self.per_pixel + SLACK_PIXELS;
@@ -236,22 +250,26 @@ impl Camera {
     }
 
     /// Whether rays start at one point.
-    pub(crate) const fn is_perspective(&self) -> bool {
+    #[must_use]
+    pub const fn is_perspective(&self) -> bool {
         self.is_perspective
     }
 
     /// The smallest view depth at which surfaces are seen.
-    pub(crate) const fn near(&self) -> f64 {
+    #[must_use]
+    pub const fn near(&self) -> f64 {
         self.near
     }
 
     /// The distance between neighboring rays.
-    pub(crate) const fn pixel(&self) -> f64 {
+    #[must_use]
+    pub const fn pixel_size(&self) -> f64 {
         self.pixel
     }
 
     /// The pixel coordinates where a ray passes.
-    pub(crate) fn pixel_of(&self, ray: DVec2) -> DVec2 {
+    #[must_use]
+    pub fn pixel_of(&self, ray: DVec2) -> DVec2 {
         DVec2::new(self.middle.x + ray.x * self.per_pixel, self.middle.y - ray.y * self.per_pixel)
     }
 }
