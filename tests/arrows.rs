@@ -9,20 +9,24 @@
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
 /// What each crate may use of the others, in its code and in its tests.
-const ARROWS: [(&str, &[&str]); 6] = [
+const ARROWS: [(&str, &[&str]); 7] = [
     ("puncta-core", &[]),
     ("puncta-io", &["puncta-core"]),
     ("puncta-grid", &["puncta-core"]),
     ("puncta-occlusion", &["puncta-core", "puncta-grid"]),
     ("puncta-cpu", &["puncta-core", "puncta-grid", "puncta-occlusion"]),
-    ("puncta", &["puncta-core", "puncta-io", "puncta-grid", "puncta-occlusion", "puncta-cpu"]),
+    ("puncta-gpu", &["puncta-core", "puncta-grid", "puncta-occlusion"]),
+    (
+        "puncta",
+        &["puncta-core", "puncta-io", "puncta-grid", "puncta-occlusion", "puncta-cpu", "puncta-gpu"],
+    ),
 ];
 
 /// Crates that only some of ours may name.
 const RESERVED: [(&str, &[&str]); 3] = [
     ("memmap2", &["puncta-grid"]),
-    ("rayon", &["puncta-cpu", "puncta-grid", "puncta-occlusion"]),
-    ("wgpu", &[]),
+    ("rayon", &["puncta-cpu", "puncta-gpu", "puncta-grid", "puncta-occlusion"]),
+    ("wgpu", &["puncta-gpu"]),
 ];
 
 fn metadata() -> Metadata {

@@ -293,7 +293,7 @@ fn a_renderer_survives_records_that_no_grid_takes() {
         let inverted = [Brick { records: count..count + 1, ..brick.clone() }];
         let content = Content { bricks: &inverted, ..content };
         assert!(renderer.draw(&content, &visible.bricks).is_err(), "records that are not there");
-        let picture = Renderer::<Sphere>::finish(&mut renderer).unwrap();
+        let picture = renderer.finish(&content).unwrap();
         // Records 0 and, at depths -1 and at x = -1, those of the last round can be seen.
         assert!(picture.visible_records().iter().all(|&id| id == 0 || id >= 10));
         assert!(picture.depth.iter().all(|depth| *depth > 0.0));

@@ -46,7 +46,8 @@ fn bricks_can_be_drawn_in_two_places() {
     assert_eq!(draw(&scene, 0..1), 0.0);
     assert!(draw(&moved, 0..0) > 10.0);
     draw(&moved, 1..2);
-    let picture = Renderer::<Sphere>::finish(&mut renderer).unwrap();
+    let content = Content { scene: &scene, bricks: &bricks, blocks: &[] };
+    let picture = renderer.finish(&content).unwrap();
     assert_eq!(picture.visible_records(), [0, 1]);
 }
 
@@ -126,7 +127,7 @@ fn what_is_asked_before_a_picture_is_begun_is_an_error() {
     assert!(renderer.draw(&content, &visible).is_err());
     assert!(renderer.recall(&content, &visible).is_err());
     assert!(renderer.survey(&content, &mut visible).is_err());
-    assert!(Renderer::<Sphere>::finish(&mut renderer).is_err());
+    assert!(renderer.finish(&content).is_err());
     assert!(!renderer.is_open(0, 0));
 }
 
@@ -173,8 +174,8 @@ impl Renderer<Sphere> for Failing {
         self.inner.survey(content, left)
     }
 
-    fn finish(&mut self) -> Result<Picture, Self::Error> {
-        Renderer::<Sphere>::finish(&mut self.inner)
+    fn finish(&mut self, content: &Content<'_, Sphere>) -> Result<Picture, Self::Error> {
+        self.inner.finish(content)
     }
 }
 

@@ -343,7 +343,7 @@ impl<R: Record> Renderer<R> for Notes {
         Ok(0)
     }
 
-    fn finish(&mut self) -> Result<Picture, Self::Error> {
+    fn finish(&mut self, _: &Content<'_, R>) -> Result<Picture, Self::Error> {
         Picture::new(1, 1)
     }
 }

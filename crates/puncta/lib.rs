@@ -2,6 +2,7 @@
 
 pub use puncta_core as core;
 pub use puncta_cpu as cpu;
+pub use puncta_gpu as gpu;
 pub use puncta_grid as grid;
 pub use puncta_io as io;
 pub use puncta_occlusion as occlusion;
@@ -11,6 +12,7 @@ pub use puncta_core::{
     Progress, Projection, Record, Renderer, Scene, Source, Sphere, Stage, View, Visible,
 };
 pub use puncta_cpu::{Background, ColorMap, Coloring, CpuRenderer, Shading, shade};
+pub use puncta_gpu::{Gpu, GpuConfig, GpuRenderer};
 #[cfg(all(target_endian = "little", any(unix, windows)))]
 pub use puncta_grid::{BrickFile, ConvertConfig, convert};
 pub use puncta_grid::{Cells, Error as GridError, Fit, Grid, GridConfig, Order, Resolution};

@@ -62,7 +62,7 @@ impl<R: Record> Renderer<R> for Counting {
         }
     }
 
-    fn finish(&mut self) -> Result<Picture, Error> {
-        Renderer::<R>::finish(&mut self.renderer)
+    fn finish(&mut self, content: &Content<'_, R>) -> Result<Picture, Error> {
+        Renderer::<R>::finish(&mut self.renderer, content)
     }
 }

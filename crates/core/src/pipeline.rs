@@ -60,7 +60,7 @@ impl From<Duration> for Budget {
 /// #     fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
 /// #         Ok(Amount::of(content.bricks, bricks))
 /// #     }
-/// #     fn finish(&mut self) -> Result<Picture, Error> { Picture::new(1, 1) }
+/// #     fn finish(&mut self, _: &Content<'_, R>) -> Result<Picture, Error> { Picture::new(1, 1) }
 /// # }
 /// # let scene = Scene::new(vec![Sphere::new([0.0; 3], 1.0)]);
 /// # let bounds = puncta_core::Aabb { min: glam::Vec3::ZERO, max: glam::Vec3::ZERO };
@@ -250,7 +250,8 @@ impl<R: Record, G: Bricks, S: Stage<G>, D: Renderer<R>> Progressive<'_, R, G, S,
     ///
     /// What the renderer has to report.
     pub fn picture(&mut self) -> Result<Picture, D::Error> {
-        self.pipeline.renderer.finish()
+        let content = content(self.scene, self.bricks);
+        self.pipeline.renderer.finish(&content)
     }
 
     /// Draws what was seen before; whether there was anything.

@@ -59,7 +59,7 @@ impl<R: Record> Content<'_, R> {
 ///
 /// A picture begins with [`begin`](Self::begin), and ends when the next one begins. In between, the
 /// other methods may be called in any order and any number of times. Different contents may go into one
-/// picture, but ids do not tell them apart. A renderer may know bricks and blocks by where they lie in
+/// picture, but ids do not tell them apart, and a renderer may refuse it. A renderer may know bricks and blocks by where they lie in
 /// memory: until the picture ends, none of them may change, nor others take their place.
 ///
 /// # Examples
@@ -89,7 +89,7 @@ impl<R: Record> Content<'_, R> {
 ///         Ok(amount)
 ///     }
 ///
-///     fn finish(&mut self) -> Result<Picture, Error> {
+///     fn finish(&mut self, _: &Content<'_, R>) -> Result<Picture, Error> {
 ///         Picture::new(self.size.0, self.size.1)
 ///     }
 /// }
@@ -153,12 +153,13 @@ pub trait Renderer<R: Record> {
         Ok(None)
     }
 
-    /// The picture of all that was drawn since [`Renderer::begin`]. Drawing can go on afterwards.
+    /// The picture of all that was drawn since [`Renderer::begin`], which was of this content. Drawing
+    /// can go on afterwards.
     ///
     /// # Errors
     ///
     /// When no picture was begun, or the device fails.
-    fn finish(&mut self) -> Result<Picture, Self::Error>;
+    fn finish(&mut self, content: &Content<'_, R>) -> Result<Picture, Self::Error>;
 }
 
 /// An amount of bricks and of their records.

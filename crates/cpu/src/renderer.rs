@@ -121,7 +121,7 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         Ok(Some(self.outlook.count(drawing)))
     }
 
-    fn finish(&mut self) -> Result<Picture, Error> {
+    fn finish(&mut self, _content: &Content<'_, R>) -> Result<Picture, Error> {
         let drawing = self.frame.as_ref().ok_or(puncta_core::Error::NotBegun)?;
         let mut picture = Picture::new(drawing.view.width(), drawing.view.height())?;
         let (width, stride) = (picture.width as usize, drawing.stride);

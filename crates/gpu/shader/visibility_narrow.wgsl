@@ -1,0 +1,13 @@
+// The visibility buffer in words of 32 bits: depths first, then ids where the depth is what is there.
+// All is drawn twice, by one and the same shader, so that both times see the same depths.
+
+@group(0) @binding(9) var<storage, read_write> visibility: array<atomic<u32>>;
+
+fn show(place: u32, depth: f32, id: u32) {
+    let key = ~bitcast<u32>(depth);
+    if round.pass_of_two == 0u {
+        atomicMax(&visibility[2u * place + 1u], key);
+    } else if atomicLoad(&visibility[2u * place + 1u]) == key {
+        atomicMax(&visibility[2u * place], ~id);
+    }
+}

@@ -1,0 +1,65 @@
+//! All compute shaders but those that draw.
+
+use crate::{
+    Error, Fragment, Gpu, Setup,
+    kernel::{Kernel, shader},
+    raster::vertices,
+};
+
+/// The kernels, by what they do.
+#[derive(Debug)]
+pub(crate) struct Kernels {
+    pub(crate) tiles: Kernel,
+    pub(crate) cull: Kernel,
+    pub(crate) over_chunks: Kernel,
+    pub(crate) set_up: Kernel,
+    pub(crate) recall: Kernel,
+    pub(crate) over_discs: Kernel,
+    pub(crate) mark_seen: Kernel,
+    pub(crate) claim: Kernel,
+    pub(crate) merge: Kernel,
+    pub(crate) clear_outlook: Kernel,
+    pub(crate) look: Kernel,
+    pub(crate) count_open: Kernel,
+}
+
+const TILES: &str = shader!("camera", "visibility_read", "tiles");
+const CULL: &str = shader!("camera", "disc", "work", "place", "cull");
+const SET_UP: &str = shader!("camera", "disc", "work", "place", "setup", "recall");
+const ARGUMENTS: &str = shader!("work", "arguments");
+const SEEN: &str = shader!("camera", "visibility_read", "seen");
+const CLAIM: &str = shader!("camera", "claim");
+const PATCH: &str = shader!("camera", "patch");
+const SURVEY: &str = shader!("camera", "disc", "work", "place", "visibility_read", "survey");
+
+impl Kernels {
+    pub(crate) fn new(gpu: &Gpu, setup: Setup, fragment: Fragment) -> Result<Self, Error> {
+        let (vertices, is_instanced) = vertices(setup, fragment);
+        let drawing = [
+            ("vertices", f64::from(vertices)),
+            ("is_instanced", f64::from(u8::from(is_instanced))),
+        ];
+        gpu.guard("pipelines", || {
+            let kernel = |label, source, entry| Kernel::new(gpu, label, (source, entry), &[]);
+            Self {
+                tiles: kernel("Kernels::tiles", TILES, "find_tiles"),
+                cull: kernel("Kernels::cull", CULL, "cull"),
+                over_chunks: kernel("Kernels::over_chunks", ARGUMENTS, "over_chunks"),
+                set_up: kernel("Kernels::set_up", SET_UP, "set_up"),
+                recall: kernel("Kernels::recall", SET_UP, "recall"),
+                over_discs: Kernel::new(
+                    gpu,
+                    "Kernels::over_discs",
+                    (ARGUMENTS, "over_discs"),
+                    &drawing,
+                ),
+                mark_seen: kernel("Kernels::mark_seen", SEEN, "mark_seen"),
+                claim: kernel("Kernels::claim", CLAIM, "claim"),
+                merge: kernel("Kernels::merge", PATCH, "merge"),
+                clear_outlook: kernel("Kernels::clear_outlook", SURVEY, "clear_outlook"),
+                look: kernel("Kernels::look", SURVEY, "look"),
+                count_open: kernel("Kernels::count_open", SURVEY, "count_open"),
+            }
+        })
+    }
+}

@@ -1,0 +1,297 @@
+/*!
+Rounds: some pieces of bricks go through the GPU together.
+
+1. Segments of records that are missing are brought (`store.rs`).
+2. Tiles of the picture are looked at anew, if anything was drawn since (`tiles.wgsl`).
+3. Pieces of hidden bricks are dropped, the others cut into chunks (`cull.wgsl`).
+4. Records become discs; those that cover no pixel's centre or are hidden are dropped (`setup.wgsl`).
+5. Discs become pixels (`raster.rs`).
+
+Nothing comes back in between: each step leaves what it counted as arguments of the next.
+*/
+
+use crate::{
+    Error, Gpu, Skipping,
+    exact::{self, Ball},
+    frame::tiles,
+    kernel::{Pool, Work, uniform},
+    kernels::Kernels,
+    raster::{Canvas, Raster},
+    renderer::Frame,
+    store::Page,
+};
+use bytemuck::{Pod, Zeroable};
+
+/// The most records and chunks of a round: some tens of megabytes of discs, and what one dispatch does.
+pub(crate) const RECORDS_MAX: u32 = 1 << 19;
+pub(crate) const CHUNKS_MAX: u32 = 60_000;
+
+/// How many records make a chunk.
+pub(crate) const CHUNK: u32 = 64;
+
+pub(crate) const IS_FIRST: u32 = 1;
+pub(crate) const IS_TESTED: u32 = 2;
+pub(crate) const IS_RECALLED: u32 = 4;
+pub(crate) const IS_COUNTED: u32 = 8;
+
+const DISC_BYTES: u64 = 48;
+const CHUNK_BYTES: u64 = 8;
+
+/// `Piece` of `cull.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Piece {
+    pub(crate) run: u32,
+    pub(crate) slot: u32,
+    pub(crate) count: u32,
+    pub(crate) flags: u32,
+}
+
+/// `Round` of `work.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct RoundData {
+    pub(crate) pieces: u32,
+    pub(crate) capacity: u32,
+    pub(crate) small: u32,
+    pub(crate) pass_of_two: u32,
+}
+
+/// `Counts` of `work.wgsl`.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Counts {
+    pub(crate) chunks: u32,
+    pub(crate) large: u32,
+    pub(crate) small: u32,
+    pub(crate) bricks: u32,
+    pub(crate) records: u32,
+    pub(crate) recalled: u32,
+    pub(crate) open: u32,
+    pub(crate) spare: u32,
+}
+
+/// What goes through together: pieces by page, and what must be brought or drawn by the CPU first.
+#[derive(Debug, Default)]
+pub(crate) struct Batch {
+    pub(crate) pieces: Vec<Vec<Piece>>,
+    pub(crate) missing: Vec<(u32, u32)>,
+    pub(crate) balls: Vec<Ball>,
+    pub(crate) records: u32,
+    pub(crate) chunks: u32,
+}
+
+impl Batch {
+    pub(crate) fn new(pages: usize) -> Self {
+        Self { pieces: vec![Vec::new(); pages], ..Self::default() }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.pieces.iter_mut().for_each(Vec::clear);
+        self.missing.clear();
+        self.balls.clear();
+        (self.records, self.chunks) = (0, 0);
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.records == 0 && self.balls.is_empty()
+    }
+
+    /// Whether these many records more would be too many.
+    pub(crate) fn is_full(&self, count: u32) -> bool {
+        self.records + count > RECORDS_MAX || self.chunks + count.div_ceil(CHUNK) > CHUNKS_MAX
+    }
+
+    pub(crate) fn push(&mut self, page: usize, piece: Piece) {
+        self.records += piece.count;
+        self.chunks += piece.count.div_ceil(CHUNK);
+        self.pieces[page].push(piece);
+    }
+}
+
+/// Buffers that last from one picture to the next.
+#[derive(Debug)]
+pub(crate) struct Bench {
+    pub(crate) pool: Pool,
+    pub(crate) counts: wgpu::Buffer,
+    pub(crate) arguments: wgpu::Buffer,
+    round: wgpu::Buffer,
+    second: wgpu::Buffer,
+    patch: wgpu::Buffer,
+}
+
+impl Bench {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, Error> {
+        let round = |label| uniform(gpu, label, size_of::<RoundData>() as u64);
+        Ok(Self {
+            pool: Pool::default(),
+            counts: crate::kernel::storage(gpu, "Bench::counts", size_of::<Counts>() as u64)?,
+            arguments: crate::kernel::storage(gpu, "Bench::arguments", 64)?,
+            round: round("Bench::round")?,
+            second: round("Bench::second")?,
+            patch: round("Bench::patch")?,
+        })
+    }
+
+    /// What was counted.
+    pub(crate) fn counted(&mut self, gpu: &Gpu) -> Result<Counts, Error> {
+        let bytes = size_of::<Counts>() as u64;
+        let read = crate::kernel::read(gpu, &mut self.pool, &[(&self.counts, 0..bytes)])?;
+        Ok(bytemuck::pod_read_unaligned(&read))
+    }
+
+    pub(crate) fn write_round(&self, gpu: &Gpu, data: RoundData) -> &wgpu::Buffer {
+        gpu.queue.write_buffer(&self.round, 0, bytemuck::bytes_of(&data));
+        &self.round
+    }
+}
+
+/// Where a round takes place.
+#[derive(Debug)]
+pub(crate) struct Stage<'a> {
+    pub(crate) gpu: &'a Gpu,
+    pub(crate) kernels: &'a Kernels,
+    pub(crate) raster: &'a Raster,
+    pub(crate) bench: &'a mut Bench,
+    pub(crate) frame: &'a mut Frame,
+    pub(crate) skipping: Skipping,
+    /// The set of seen ids, and the bricks drawn in the picture before, if only these are drawn.
+    pub(crate) seen: Option<(wgpu::Buffer, wgpu::Buffer)>,
+}
+
+impl Stage<'_> {
+    /// Looks at tiles anew, if they are not as they should be.
+    pub(crate) fn freshen(&mut self, work: &mut Work<'_>) {
+        let frame = &mut *self.frame;
+        let is_stale = match self.skipping {
+            Skipping::Hidden => !frame.are_tiles_fresh,
+            // As they were before anything was drawn, for good.
+            Skipping::Nothing => !frame.have_tiles,
+        };
+        if is_stale {
+            let target = &frame.target;
+            let bindings = [
+                (0, target.camera.as_entire_binding()),
+                (8, target.tiles.as_entire_binding()),
+                (9, target.visibility.as_entire_binding()),
+            ];
+            self.kernels.tiles.run(work, &bindings, tiles(&target.view));
+            (frame.have_tiles, frame.are_tiles_fresh) = (true, true);
+        }
+    }
+
+    /// Draws pieces that lie in one page.
+    pub(crate) fn draw_page(&mut self, page: &Page, pieces: &[Piece]) -> Result<(), Error> {
+        let (gpu, small) = (self.gpu, self.raster.small(self.gpu));
+        let capacity: u32 = pieces.iter().map(|piece| piece.count).sum();
+        let chunks: u32 = pieces.iter().map(|piece| piece.count.div_ceil(CHUNK)).sum();
+        let runs = self.frame.table.buffer(gpu)?;
+        let pool = &mut self.bench.pool;
+        let list = pool.filled(gpu, "Round::pieces", pieces)?;
+        let cut = pool.storage(gpu, "Round::chunks", u64::from(chunks) * CHUNK_BYTES)?;
+        let discs = pool.storage(gpu, "Round::discs", u64::from(capacity) * DISC_BYTES)?;
+        let count = u32::try_from(pieces.len()).unwrap_or(u32::MAX);
+        let data = RoundData { pieces: count, capacity, small, pass_of_two: 0 };
+        gpu.queue.write_buffer(&self.bench.round, 0, bytemuck::bytes_of(&data));
+        let second = RoundData { pass_of_two: 1, ..data };
+        gpu.queue.write_buffer(&self.bench.second, 0, bytemuck::bytes_of(&second));
+        let (kernels, drawn) = (self.kernels, self.frame.drawn.clone());
+        let before = self.seen.as_ref().map_or_else(|| list.clone(), |(_, before)| before.clone());
+        gpu.guard("a round", || {
+            let mut work = Work::new(gpu, "Stage::draw_page");
+            self.freshen(&mut work);
+            let (frame, bench) = (&mut *self.frame, &*self.bench);
+            work.encoder.clear_buffer(&bench.counts, 0, Some(12));
+            let bindings = [
+                (0, frame.target.camera.as_entire_binding()),
+                (1, runs.as_entire_binding()),
+                (2, bench.round.as_entire_binding()),
+                (3, list.as_entire_binding()),
+                (5, cut.as_entire_binding()),
+                (7, bench.counts.as_entire_binding()),
+                (8, frame.target.tiles.as_entire_binding()),
+                (10, drawn.as_entire_binding()),
+                (12, before.as_entire_binding()),
+            ];
+            kernels.cull.run(&mut work, &bindings, count);
+            let counted =
+                [(7, bench.counts.as_entire_binding()), (11, bench.arguments.as_entire_binding())];
+            kernels.over_chunks.run_once(&mut work, &counted);
+            let mut bindings = vec![
+                (0, frame.target.camera.as_entire_binding()),
+                (1, runs.as_entire_binding()),
+                (2, bench.round.as_entire_binding()),
+                (3, page.spheres.as_entire_binding()),
+                (4, page.ids.as_entire_binding()),
+                (5, cut.as_entire_binding()),
+                (6, discs.as_entire_binding()),
+                (7, bench.counts.as_entire_binding()),
+                (8, frame.target.tiles.as_entire_binding()),
+            ];
+            let set_up = match &self.seen {
+                Some((seen, _)) => {
+                    bindings.push((10, seen.as_entire_binding()));
+                    &kernels.recall
+                }
+                None => &kernels.set_up,
+            };
+            set_up.run_indirect(&mut work, &bindings, (&bench.arguments, 0));
+            kernels.over_discs.run_once(&mut work, &counted);
+            self.draw_discs(&mut work, &discs);
+            work.submit();
+        })
+    }
+
+    /// Draws the discs that were made, once or twice.
+    fn draw_discs(&mut self, work: &mut Work<'_>, discs: &wgpu::Buffer) {
+        let (frame, bench) = (&mut *self.frame, &*self.bench);
+        let target = &frame.target;
+        let mut canvas = Canvas {
+            camera: &target.camera,
+            round: &bench.round,
+            discs,
+            counts: &bench.counts,
+            arguments: &bench.arguments,
+            visibility: &target.visibility,
+            depth: &target.depth,
+        };
+        let is_kept = std::mem::replace(&mut frame.has_depth, true);
+        let load = if is_kept { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) };
+        self.raster.draw(work, &canvas, load);
+        if let Some(known) = &target.known {
+            let bindings = [
+                (0, target.camera.as_entire_binding()),
+                (9, target.visibility.as_entire_binding()),
+                (10, known.as_entire_binding()),
+            ];
+            self.kernels.claim.run(work, &bindings, target.pixels());
+            canvas.round = &bench.second;
+            self.raster.draw(work, &canvas, wgpu::LoadOp::Load);
+        }
+        frame.are_tiles_fresh = false;
+    }
+
+    /// Draws what `f32` cannot.
+    pub(crate) fn draw_exact(&mut self, balls: &[Ball]) -> Result<(), Error> {
+        let Some(camera) = &self.frame.camera else { return Ok(()) };
+        let Some((rectangle, pixels)) = exact::draw(camera, balls) else { return Ok(()) };
+        let gpu = self.gpu;
+        let drawn = self.bench.pool.filled(gpu, "Round::patch", &pixels)?;
+        gpu.queue.write_buffer(&self.bench.patch, 0, bytemuck::bytes_of(&rectangle));
+        let target = &self.frame.target;
+        gpu.guard("a patch", || {
+            let mut work = Work::new(gpu, "Stage::draw_exact");
+            let bindings = [
+                (0, target.camera.as_entire_binding()),
+                (3, self.bench.patch.as_entire_binding()),
+                (4, drawn.as_entire_binding()),
+                (9, target.visibility.as_entire_binding()),
+            ];
+            let items = rectangle.size[0] * rectangle.size[1];
+            self.kernels.merge.run(&mut work, &bindings, items);
+            work.submit();
+        })?;
+        self.frame.are_tiles_fresh = false;
+        Ok(())
+    }
+}

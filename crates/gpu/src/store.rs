@@ -1,0 +1,313 @@
+/*!
+Records on the GPU: pages of slots, and the ring of buffers through which they get there.
+
+A page is as large as a shader can see in one piece. Segments that are missing are brought by way of a
+ring of staging buffers of a fixed size: a thread fills one while the device copies from another. So
+memory beside the pages does not grow with what is brought, and there is no wait but for the slower of
+the two.
+*/
+
+use crate::{
+    Error, Gpu,
+    kernel::{Work, buffer, storage},
+    residency::{Place, Residency, SEGMENT},
+};
+use puncta_core::{Record, Scene};
+use std::{
+    collections::VecDeque,
+    sync::mpsc::{self, Receiver, Sender},
+};
+
+/// The bytes of a record on the GPU: a sphere and an id.
+pub(crate) const RECORD_BYTES: u64 = 20;
+
+/// How many segments a staging buffer holds: 4 MB.
+pub(crate) const STAGED: usize = 205;
+
+/// How many staging buffers there are.
+const RING: usize = 3;
+
+const SPHERE_BYTES: u64 = 16 * SEGMENT as u64;
+const ID_BYTES: u64 = 4 * SEGMENT as u64;
+
+/// The records of some segments.
+#[derive(Clone, Debug)]
+pub(crate) struct Page {
+    pub(crate) spheres: wgpu::Buffer,
+    pub(crate) ids: wgpu::Buffer,
+}
+
+/// What is on the GPU of a scene.
+#[derive(Debug)]
+pub(crate) struct Store {
+    /// The versions of the columns that it was made of, and the number of records.
+    key: (u64, u64, usize),
+    pub(crate) residency: Residency,
+    pages: Vec<Option<Page>>,
+    /// How many slots a page has, and how many all have.
+    page_slots: u32,
+    slots: u32,
+    /// The largest of the ids.
+    pub(crate) id_max: u32,
+    /// The bytes that were brought to the GPU since it was made.
+    pub(crate) brought: u64,
+}
+
+/// Staging buffers, those that can be filled in a queue.
+#[derive(Debug)]
+pub(crate) struct Ring {
+    free: VecDeque<wgpu::Buffer>,
+    back: (Sender<wgpu::Buffer>, Receiver<wgpu::Buffer>),
+    count: usize,
+}
+
+impl Default for Ring {
+    fn default() -> Self {
+        Self { free: VecDeque::new(), back: mpsc::channel(), count: 0 }
+    }
+}
+
+/// What a scene's copy on the GPU is known by.
+pub(crate) fn key<R: Record>(scene: &Scene<R>) -> (u64, u64, usize) {
+    let ids = scene.attributes.ids.as_ref().map_or(0, puncta_core::Column::version);
+    (scene.records.version(), ids, scene.records.len())
+}
+
+fn id_max<R: Record>(scene: &Scene<R>) -> u32 {
+    let last = u32::try_from(scene.records.len()).unwrap_or(u32::MAX).saturating_sub(1);
+    scene.attributes.ids.as_deref().map_or(last, |ids| ids.iter().copied().max().unwrap_or(0))
+}
+
+impl Store {
+    /// A store for the records of a scene, of at most so many bytes.
+    pub(crate) fn new<R: Record>(gpu: &Gpu, scene: &Scene<R>, bytes: u64) -> Result<Self, Error> {
+        let segment_bytes = RECORD_BYTES * u64::from(SEGMENT);
+        if bytes < segment_bytes {
+            return Err(Error::Budget { bytes, least: segment_bytes });
+        }
+        let segments = scene.records.len().div_ceil(SEGMENT as usize);
+        let slots = (bytes / segment_bytes).min(segments as u64).max(1);
+        let page_slots = (gpu.binding_bytes_max() / SPHERE_BYTES).clamp(1, 1 << 16);
+        let slots = u32::try_from(slots).unwrap_or(u32::MAX);
+        let page_slots = u32::try_from(page_slots).unwrap_or(1).min(slots);
+        Ok(Self {
+            key: key(scene),
+            residency: Residency::new(segments, slots as usize),
+            pages: vec![None; slots.div_ceil(page_slots) as usize],
+            page_slots,
+            slots,
+            id_max: id_max(scene),
+            brought: 0,
+        })
+    }
+
+    pub(crate) fn is_of<R: Record>(&self, scene: &Scene<R>) -> bool {
+        self.key == key(scene)
+    }
+
+    /// The bytes of all pages that were made.
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = |page: &Page| page.spheres.size() + page.ids.size();
+        self.pages.iter().flatten().map(size).sum()
+    }
+
+    /// The number of pages.
+    pub(crate) fn pages(&self) -> usize {
+        self.pages.len()
+    }
+
+    /// The page of a slot, and where the slot's records start in it.
+    pub(crate) fn address(&self, slot: u32) -> (usize, u32) {
+        ((slot / self.page_slots) as usize, slot % self.page_slots * SEGMENT)
+    }
+
+    /// A page, which is made if need be.
+    pub(crate) fn page(&mut self, gpu: &Gpu, page: usize) -> Result<Page, Error> {
+        if let Some(Some(page)) = self.pages.get(page) {
+            return Ok(page.clone());
+        }
+        let first = u32::try_from(page).unwrap_or(u32::MAX).saturating_mul(self.page_slots);
+        let slots = u64::from(self.page_slots.min(self.slots.saturating_sub(first)));
+        let made = Page {
+            spheres: storage(gpu, "Page::spheres", slots * SPHERE_BYTES)?,
+            ids: storage(gpu, "Page::ids", slots * ID_BYTES)?,
+        };
+        self.pages[page] = Some(made.clone());
+        Ok(made)
+    }
+
+    /// Gives a segment a slot during a round; what is missing is noted.
+    pub(crate) fn take(
+        &mut self,
+        segment: u32,
+        round: u64,
+        missing: &mut Vec<(u32, u32)>,
+    ) -> Option<u32> {
+        match self.residency.take(segment, round) {
+            Place::Resident(slot) => Some(slot),
+            Place::Missing(slot) => {
+                missing.push((segment, slot));
+                Some(slot)
+            }
+            Place::Full => None,
+        }
+    }
+
+    /// Brings segments to their slots.
+    pub(crate) fn bring<R: Record>(
+        &mut self,
+        gpu: &Gpu,
+        ring: &mut Ring,
+        (scene, missing): (&Scene<R>, &[(u32, u32)]),
+    ) -> Result<(), Error> {
+        if missing.is_empty() {
+            return Ok(());
+        }
+        let result = self.stream(gpu, ring, (scene, missing));
+        if result.is_err() {
+            self.residency.drop_all();
+            *ring = Ring::default();
+        }
+        result
+    }
+
+    fn stream<R: Record>(
+        &mut self,
+        gpu: &Gpu,
+        ring: &mut Ring,
+        (scene, missing): (&Scene<R>, &[(u32, u32)]),
+    ) -> Result<(), Error> {
+        let filler = Filler { records: &scene.records, ids: scene.attributes.ids.as_deref() };
+        let mut rest = missing.chunks(STAGED);
+        std::thread::scope(|scope| {
+            let (jobs, waiting) = mpsc::channel::<(wgpu::Buffer, &[(u32, u32)])>();
+            let (done, filled) = mpsc::channel();
+            scope.spawn(move || {
+                for (staging, batch) in waiting {
+                    let result = filler.fill(&staging, batch);
+                    if done.send((staging, batch, result)).is_err() {
+                        break;
+                    }
+                }
+            });
+            let mut under_way = 0;
+            loop {
+                while under_way < RING - 1 && rest.len() > 0 {
+                    let Some(staging) = ring.next(gpu)? else { break };
+                    if let Some(batch) = rest.next() {
+                        jobs.send((staging, batch)).ok();
+                        under_way += 1;
+                    }
+                }
+                let lost = |reason: String| Error::Lost { reason };
+                if under_way == 0 {
+                    let is_done = rest.len() == 0;
+                    return if is_done { Ok(()) } else { Err(lost("no memory came back".into())) };
+                }
+                let (staging, batch, result) =
+                    filled.recv().map_err(|error| lost(error.to_string()))?;
+                under_way -= 1;
+                result?;
+                self.copy(gpu, &staging, batch)?;
+                ring.give_back(staging);
+            }
+        })
+    }
+
+    /// Copies a staging buffer to the slots of its segments.
+    fn copy(
+        &mut self,
+        gpu: &Gpu,
+        staging: &wgpu::Buffer,
+        batch: &[(u32, u32)],
+    ) -> Result<(), Error> {
+        staging.unmap();
+        let mut work = Work::new(gpu, "Store::copy");
+        for (place, (_, slot)) in (0_u64..).zip(batch) {
+            let (page, first) = self.address(*slot);
+            let page = self.page(gpu, page)?;
+            let from = place * (SPHERE_BYTES + ID_BYTES);
+            let first = u64::from(first);
+            work.encoder.copy_buffer_to_buffer(
+                staging,
+                from,
+                &page.spheres,
+                first * 16,
+                SPHERE_BYTES,
+            );
+            let from = from + SPHERE_BYTES;
+            work.encoder.copy_buffer_to_buffer(staging, from, &page.ids, first * 4, ID_BYTES);
+        }
+        self.brought += batch.len() as u64 * (SPHERE_BYTES + ID_BYTES);
+        gpu.guard("bringing records", || work.submit())
+    }
+}
+
+impl Ring {
+    /// A buffer that can be filled; waits for one if there is none.
+    fn next(&mut self, gpu: &Gpu) -> Result<Option<wgpu::Buffer>, Error> {
+        self.free.extend(self.back.1.try_iter());
+        if let Some(free) = self.free.pop_front() {
+            return Ok(Some(free));
+        }
+        if self.count < RING {
+            self.count += 1;
+            let bytes = STAGED as u64 * (SPHERE_BYTES + ID_BYTES);
+            let usage = wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC;
+            let made = buffer(gpu, "Ring::staging", (bytes, usage))?;
+            made.map_async(wgpu::MapMode::Write, .., |_| {});
+            gpu.wait()?;
+            return Ok(Some(made));
+        }
+        gpu.wait()?;
+        self.free.extend(self.back.1.try_iter());
+        Ok(self.free.pop_front())
+    }
+
+    /// Takes a buffer back that is being copied from: it can be filled once that is done.
+    fn give_back(&self, staging: wgpu::Buffer) {
+        let back = self.back.0.clone();
+        let handle = staging.clone();
+        staging.map_async(wgpu::MapMode::Write, .., move |result| {
+            if result.is_ok() {
+                back.send(handle).ok();
+            }
+        });
+    }
+}
+
+/// Fills staging buffers with the records of a scene.
+#[derive(Clone, Copy, Debug)]
+struct Filler<'a, R> {
+    records: &'a [R],
+    ids: Option<&'a [u32]>,
+}
+
+impl<R: Record> Filler<'_, R> {
+    fn fill(&self, staging: &wgpu::Buffer, batch: &[(u32, u32)]) -> Result<(), Error> {
+        let lost = |error: wgpu::MapRangeError| Error::Lost { reason: error.to_string() };
+        let mut view = staging.get_mapped_range_mut(..).map_err(lost)?;
+        let (mut spheres, mut ids) = (Vec::new(), Vec::new());
+        let bytes = usize::try_from(SPHERE_BYTES + ID_BYTES).unwrap_or(0);
+        let at = usize::try_from(SPHERE_BYTES).unwrap_or(0);
+        for (place, (segment, _)) in batch.iter().enumerate() {
+            let first = *segment as usize * SEGMENT as usize;
+            let last = (first + SEGMENT as usize).min(self.records.len());
+            let sphere = |record: &R| record.position().extend(record.radius()).to_array();
+            spheres.clear();
+            spheres.extend(self.records[first..last].iter().map(sphere));
+            ids.clear();
+            match self.ids {
+                Some(all) => ids.extend_from_slice(&all[first..last]),
+                None => ids.extend((first..last).map(|id| u32::try_from(id).unwrap_or(u32::MAX))),
+            }
+            // Slots are always filled: what is beyond the last record is not drawn.
+            spheres.resize(SEGMENT as usize, [0.0; 4]);
+            ids.resize(SEGMENT as usize, 0);
+            let from = place * bytes;
+            view.slice(from..from + at).copy_from_slice(bytemuck::cast_slice(&spheres));
+            view.slice(from + at..from + bytes).copy_from_slice(bytemuck::cast_slice(&ids));
+        }
+        Ok(())
+    }
+}
