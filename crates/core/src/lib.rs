@@ -33,6 +33,7 @@ a sphere open, one looks through the cut at what lies behind.
 
 mod bounds;
 mod brick;
+mod budget;
 mod column;
 mod error;
 mod frame;
@@ -50,11 +51,12 @@ mod view;
 pub use crate::{
     bounds::{Aabb, Bounds},
     brick::{Block, Brick, Bricks, Visible, VisibleBrick},
+    budget::Budget,
     column::Column,
     error::Error,
     image::Image,
     picture::{NO_RECORD, Picture},
-    pipeline::{Budget, Pipeline, Progressive},
+    pipeline::{Pipeline, Progressive},
     range::{RangeBins, inner_range},
     record::{Record, Sphere},
     renderer::{Amount, Content, Progress, Renderer},

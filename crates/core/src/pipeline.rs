@@ -13,37 +13,10 @@ whole picture.
 */
 
 use crate::{
-    Amount, Brick, Bricks, Content, Frame, Picture, Progress, Record, Renderer, Scene, Stage, View,
-    Visible, VisibleBrick,
+    Amount, Brick, Bricks, Budget, Content, Frame, Picture, Progress, Record, Renderer, Scene,
+    Stage, View, Visible, VisibleBrick,
 };
-use std::{
-    fmt,
-    time::{Duration, Instant},
-};
-
-/// How much is drawn in one step of a [`Progressive`] picture.
-///
-/// Numbers of records and durations turn into budgets by themselves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Budget {
-    /// Bricks that hold at least this many records, those that are skipped included.
-    Records(u64),
-    /// About as much as can be drawn in this time, at least one brick. What a step draws depends on
-    /// the machine then; the complete picture does not.
-    Time(Duration),
-}
-
-impl From<u64> for Budget {
-    fn from(records: u64) -> Self {
-        Self::Records(records)
-    }
-}
-
-impl From<Duration> for Budget {
-    fn from(time: Duration) -> Self {
-        Self::Time(time)
-    }
-}
+use std::{fmt, time::Instant};
 
 /// Stages and a renderer.
 ///
@@ -166,6 +139,11 @@ impl<S, D> Pipeline<S, D> {
     pub const fn renderer(&self) -> &D {
         &self.renderer
     }
+
+    /// The renderer, to change its settings or to use what it has drawn.
+    pub const fn renderer_mut(&mut self) -> &mut D {
+        &mut self.renderer
+    }
 }
 
 /// A picture that is being drawn, step by step.
@@ -203,6 +181,16 @@ impl<R, G, S, D> Progressive<'_, R, G, S, D> {
     #[must_use]
     pub const fn renderer(&self) -> &D {
         &self.pipeline.renderer
+    }
+
+    /// The renderer, to show what it has drawn without making a [`Picture`].
+    ///
+    /// The picture is half done and the rest will be drawn with this renderer. Whoever begins a
+    /// picture with it, draws with it or puts another one in its place spoils this picture; the next
+    /// one ([`look`](Self::look)) is not concerned.
+    #[must_use]
+    pub const fn renderer_mut(&mut self) -> &mut D {
+        &mut self.pipeline.renderer
     }
 
     /// The bricks that are left, in the order in which they are to be drawn.
