@@ -4,7 +4,8 @@ What every crate of puncta speaks: records, scenes, views, pictures, and the tra
 A [`Scene`] holds [`Record`]s (any type with a position and a radius) relative to an `f64` origin.
 A spatial structure, such as the uniform grid of `puncta-grid`, cuts the records into [`Brick`]s.
 For a [`View`], [`Stage`]s narrow and order the bricks, and a [`Renderer`] draws them into a
-[`Picture`]: view depth and record id for each pixel. A [`Pipeline`] ties these together.
+[`Picture`]: view depth and record id for each pixel. A [`Pipeline`] ties these together, and a
+[`Live`] runs it on a thread of its own, for programs that must not wait.
 
 ```
 use glam::DVec3;
@@ -38,6 +39,7 @@ mod column;
 mod error;
 mod frame;
 mod image;
+mod live;
 mod picture;
 mod pipeline;
 mod range;
@@ -55,6 +57,7 @@ pub use crate::{
     column::Column,
     error::Error,
     image::Image,
+    live::{Live, Step},
     picture::{NO_RECORD, Picture},
     pipeline::{Pipeline, Progressive},
     range::{RangeBins, inner_range},

@@ -3,7 +3,8 @@ The pipeline: stages narrow and order the bricks of a frame, a renderer draws th
 
 [`Pipeline::render`] draws to the end. [`Pipeline::progressive`] draws bit by bit and tells after each
 step what is left and how many pixels that could still change, so that a program can show what it has,
-stop when nothing can change any more, or turn to a newer view ([`Progressive::look`]).
+stop when nothing can change any more, or turn to a newer view ([`Progressive::look`]). A
+[`Live`](crate::Live) does that on a thread of its own.
 
 A step draws for a [`Budget`]. Then the renderer is asked what each brick that is left could still
 change: those that can change nothing are skipped, and the stages may order the rest anew. The first
