@@ -18,7 +18,14 @@ const ARROWS: [(&str, &[&str]); 7] = [
     ("puncta-gpu", &["puncta-core", "puncta-grid", "puncta-occlusion"]),
     (
         "puncta",
-        &["puncta-core", "puncta-io", "puncta-grid", "puncta-occlusion", "puncta-cpu", "puncta-gpu"],
+        &[
+            "puncta-core",
+            "puncta-io",
+            "puncta-grid",
+            "puncta-occlusion",
+            "puncta-cpu",
+            "puncta-gpu",
+        ],
     ),
 ];
 

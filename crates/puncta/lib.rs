@@ -8,8 +8,9 @@ pub use puncta_io as io;
 pub use puncta_occlusion as occlusion;
 
 pub use puncta_core::{
-    Amount, Bounds, Brick, Bricks, Budget, Content, Frame, Image, NO_RECORD, Picture, Pipeline,
-    Progress, Projection, Record, Renderer, Scene, Source, Sphere, Stage, View, Visible,
+    Amount, Bounds, Brick, Bricks, Budget, Content, Frame, Image, Live, NO_RECORD, Picture,
+    Pipeline, Progress, Projection, Record, Renderer, Scene, Source, Sphere, Stage, Step, View,
+    Visible,
 };
 pub use puncta_cpu::{Background, ColorMap, Coloring, CpuRenderer, Shading, shade};
 pub use puncta_gpu::{Gpu, GpuConfig, GpuRenderer};

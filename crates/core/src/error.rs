@@ -1,8 +1,9 @@
-//! What can be wrong with a scene or a view.
+//! What can be wrong with a scene or a view, or end its drawing.
 
 use glam::DVec3;
 
-/// A scene or a view that cannot be used, with the value that is at fault.
+/// A scene or a view that cannot be used, with the value that is at fault; or drawing that has
+/// ended.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -81,4 +82,11 @@ pub enum Error {
     /// A renderer was asked for a picture before one was begun.
     #[error("no picture was begun")]
     NotBegun,
+    /// A renderer, a stage or what is called after each step has panicked on the thread of a
+    /// [`Live`](crate::Live), which has ended.
+    #[error("the drawing thread has panicked: {message}")]
+    DrawingPanicked {
+        /// What the panic says.
+        message: String,
+    },
 }

@@ -4,7 +4,8 @@ What every crate of puncta speaks: records, scenes, views, pictures, and the tra
 A [`Scene`] holds [`Record`]s (any type with a position and a radius) relative to an `f64` origin.
 A spatial structure, such as the uniform grid of `puncta-grid`, cuts the records into [`Brick`]s.
 For a [`View`], [`Stage`]s narrow and order the bricks, and a [`Renderer`] draws them into a
-[`Picture`]: view depth and record id for each pixel. A [`Pipeline`] ties these together.
+[`Picture`]: view depth and record id for each pixel. A [`Pipeline`] ties these together, and a
+[`Live`] runs it on a thread of its own, for programs that must not wait.
 
 ```
 use glam::DVec3;
@@ -34,11 +35,13 @@ a sphere open, one looks through the cut at what lies behind.
 mod bound;
 mod bounds;
 mod brick;
+mod budget;
 mod camera;
 mod column;
 mod error;
 mod frame;
 mod image;
+mod live;
 mod picture;
 mod pipeline;
 mod range;
@@ -53,12 +56,14 @@ pub use crate::{
     bound::{Bounder, ScreenBound, depth_below},
     bounds::{Aabb, Bounds},
     brick::{Block, Brick, Bricks, Visible, VisibleBrick},
+    budget::Budget,
     camera::{Camera, Hit, ScreenBox, nearest_depth},
     column::Column,
     error::Error,
     image::Image,
+    live::{Live, Step},
     picture::{NO_RECORD, Picture},
-    pipeline::{Budget, Pipeline, Progressive},
+    pipeline::{Pipeline, Progressive},
     range::{RangeBins, inner_range},
     record::{Record, Sphere},
     renderer::{Amount, Content, Progress, Renderer},

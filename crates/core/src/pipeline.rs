@@ -3,7 +3,8 @@ The pipeline: stages narrow and order the bricks of a frame, a renderer draws th
 
 [`Pipeline::render`] draws to the end. [`Pipeline::progressive`] draws bit by bit and tells after each
 step what is left and how many pixels that could still change, so that a program can show what it has,
-stop when nothing can change any more, or turn to a newer view ([`Progressive::look`]).
+stop when nothing can change any more, or turn to a newer view ([`Progressive::look`]). A
+[`Live`](crate::Live) does that on a thread of its own.
 
 A step draws for a [`Budget`]. Then the renderer is asked what each brick that is left could still
 change: those that can change nothing are skipped, and the stages may order the rest anew. The first
@@ -13,37 +14,10 @@ whole picture.
 */
 
 use crate::{
-    Amount, Brick, Bricks, Content, Frame, Picture, Progress, Record, Renderer, Scene, Stage, View,
-    Visible, VisibleBrick,
+    Amount, Brick, Bricks, Budget, Content, Frame, Picture, Progress, Record, Renderer, Scene,
+    Stage, View, Visible, VisibleBrick,
 };
-use std::{
-    fmt,
-    time::{Duration, Instant},
-};
-
-/// How much is drawn in one step of a [`Progressive`] picture.
-///
-/// Numbers of records and durations turn into budgets by themselves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Budget {
-    /// Bricks that hold at least this many records, those that are skipped included.
-    Records(u64),
-    /// About as much as can be drawn in this time, at least one brick. What a step draws depends on
-    /// the machine then; the complete picture does not.
-    Time(Duration),
-}
-
-impl From<u64> for Budget {
-    fn from(records: u64) -> Self {
-        Self::Records(records)
-    }
-}
-
-impl From<Duration> for Budget {
-    fn from(time: Duration) -> Self {
-        Self::Time(time)
-    }
-}
+use std::{fmt, time::Instant};
 
 /// Stages and a renderer.
 ///
@@ -166,6 +140,11 @@ impl<S, D> Pipeline<S, D> {
     pub const fn renderer(&self) -> &D {
         &self.renderer
     }
+
+    /// The renderer, to change its settings or to use what it has drawn.
+    pub const fn renderer_mut(&mut self) -> &mut D {
+        &mut self.renderer
+    }
 }
 
 /// A picture that is being drawn, step by step.
@@ -203,6 +182,16 @@ impl<R, G, S, D> Progressive<'_, R, G, S, D> {
     #[must_use]
     pub const fn renderer(&self) -> &D {
         &self.pipeline.renderer
+    }
+
+    /// The renderer, to show what it has drawn without making a [`Picture`].
+    ///
+    /// The picture is half done and the rest will be drawn with this renderer. Whoever begins a
+    /// picture with it, draws with it or puts another one in its place spoils this picture; the next
+    /// one ([`look`](Self::look)) is not concerned.
+    #[must_use]
+    pub const fn renderer_mut(&mut self) -> &mut D {
+        &mut self.pipeline.renderer
     }
 
     /// The bricks that are left, in the order in which they are to be drawn.

@@ -81,6 +81,16 @@ impl<G: ?Sized> Stage<G> for Box<dyn Stage<G> + '_> {
     }
 }
 
+impl<G: ?Sized> Stage<G> for Box<dyn Stage<G> + Send + '_> {
+    fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
+        self.as_mut().apply(frame, visible);
+    }
+
+    fn refine(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
+        self.as_mut().refine(frame, visible);
+    }
+}
+
 impl<G: ?Sized, A: Stage<G>, B: Stage<G>> Stage<G> for (A, B) {
     fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
         self.0.apply(frame, visible);

@@ -148,7 +148,7 @@ impl Gpu {
     /// The most bytes that a shader sees in one piece.
     pub(crate) fn binding_bytes_max(&self) -> u64 {
         let limits = self.device.limits();
-        let binding = u64::from(limits.max_storage_buffer_binding_size);
+        let binding = limits.max_storage_buffer_binding_size;
         binding.min(limits.max_buffer_size) / 256 * 256
     }
 
