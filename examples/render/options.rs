@@ -2,10 +2,14 @@
 
 use clap::{Parser, ValueEnum};
 use glam::DVec3;
-use puncta::{Background, ColorMap, io::synthetic::Generator};
+use puncta::{
+    Background, ColorMap,
+    gpu::{Fragment, Setup},
+    io::synthetic::Generator,
+};
 use std::{num::NonZero, path::PathBuf};
 
-/// Draws a particle or point file, or a synthetic scene, exactly, on the CPU.
+/// Draws a particle or point file, or a synthetic scene, exactly, on the CPU or a GPU.
 #[derive(Debug, Parser)]
 #[command(name = "render", version, after_help = after_help())]
 pub(crate) struct Options {
@@ -95,6 +99,23 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N")]
     pub(crate) grid: Option<NonZero<u32>>,
 
+    /// What draws
+    #[arg(long, value_enum, default_value_t = BackendKind::Cpu)]
+    pub(crate) backend: BackendKind,
+
+    /// A part of the name of the GPU to draw with; the fastest by default
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+
+    /// How spheres become fragments: instanced, pulled, triangle, mesh or compute; by default what
+    /// suits the GPU
+    #[arg(long, value_name = "SETUP")]
+    pub(crate) setup: Option<Setup>,
+
+    /// What fragments do: sphere or sphere-early; point and proxy are not exact
+    #[arg(long, value_name = "FRAGMENT")]
+    pub(crate) fragment: Option<Fragment>,
+
     /// Threads to draw with, at most 1024; all cores by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
@@ -114,6 +135,15 @@ pub(crate) struct Options {
     /// Write counts, bytes and seconds
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
+}
+
+/// What draws.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum BackendKind {
+    /// All cores; needs nothing
+    Cpu,
+    /// A GPU, through Vulkan, Metal, DirectX or OpenGL
+    Gpu,
 }
 
 /// Which radii to take for atoms.

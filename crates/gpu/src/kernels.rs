@@ -21,6 +21,7 @@ pub(crate) struct Kernels {
     pub(crate) clear_outlook: Kernel,
     pub(crate) look: Kernel,
     pub(crate) count_open: Kernel,
+    pub(crate) glance: Kernel,
 }
 
 const TILES: &str = shader!("camera", "visibility_read", "tiles");
@@ -59,6 +60,7 @@ impl Kernels {
                 clear_outlook: kernel("Kernels::clear_outlook", SURVEY, "clear_outlook"),
                 look: kernel("Kernels::look", SURVEY, "look"),
                 count_open: kernel("Kernels::count_open", SURVEY, "count_open"),
+                glance: kernel("Kernels::glance", SURVEY, "glance"),
             }
         })
     }

@@ -18,10 +18,14 @@ use crate::{
 use puncta_core::{Amount, Camera, Content, Picture, Record, Renderer, View, VisibleBrick};
 use std::ops::Range;
 
-/// The share of the bricks that are drawn before bricks are tested for the first time, and the
-/// smallest number: from then on twice as many each time.
-const FIRST_SHARE: usize = 32;
-const FIRST_MIN: usize = 256;
+/// The share of the bricks that are drawn before those that are left are tested for the first time, and
+/// the smallest number.
+const FIRST_SHARE: usize = 128;
+const FIRST_MIN: usize = 64;
+
+/// The share of the bricks that are left by then, of which more than that is drawn at once later: what
+/// is hidden is neither drawn nor brought, and testing takes few turns.
+const LATER_SHARE: usize = 64;
 
 /// Draws spheres exactly, through wgpu.
 ///
@@ -157,16 +161,21 @@ impl<R: Record> Renderer<R> for GpuRenderer {
     fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
         let indices = self.prepare(content, bricks)?;
         self.clear_counts()?;
-        let (mut rest, mut close) = (indices.as_slice(), Amount::default());
-        let mut count = match self.config.skipping {
-            Skipping::Hidden => (rest.len() / FIRST_SHARE).max(FIRST_MIN),
-            Skipping::Nothing => usize::MAX,
-        };
+        let mut close = Amount::default();
+        let (mut rest, first) = (indices, bricks.len().div_ceil(FIRST_SHARE).max(FIRST_MIN));
         while !rest.is_empty() {
-            let (now, later) = rest.split_at(count.min(rest.len()));
-            close += self.draw_round(content, now)?;
+            let count = match self.config.skipping {
+                Skipping::Nothing => rest.len(),
+                Skipping::Hidden => {
+                    if self.frame.as_ref().is_some_and(|frame| frame.has_drawn) {
+                        rest = survey::glance(self, &rest)?;
+                    }
+                    first.max(rest.len() / LATER_SHARE).min(rest.len())
+                }
+            };
+            let later = rest.split_off(count);
+            close += self.draw_round(content, &rest)?;
             rest = later;
-            count = count.saturating_mul(2);
         }
         let counted = self.bench.counted(&self.gpu)?;
         close += Amount { bricks: counted.bricks.into(), records: counted.records.into() };
