@@ -13,7 +13,7 @@ pub use puncta_core::{
     Visible,
 };
 pub use puncta_cpu::{Background, ColorMap, Coloring, Colors, CpuRenderer, Shading, shade};
-pub use puncta_gpu::{Gpu, GpuConfig, GpuRenderer};
+pub use puncta_gpu::{Gpu, GpuConfig, GpuRenderer, Paint, ShadeConfig};
 #[cfg(all(target_endian = "little", any(unix, windows)))]
 pub use puncta_grid::{BrickFile, ConvertConfig, convert};
 pub use puncta_grid::{Cells, Error as GridError, Fit, Grid, GridConfig, Order, Resolution};

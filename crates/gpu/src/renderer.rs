@@ -10,7 +10,7 @@ use crate::{
     residency::SEGMENT,
     round::{Batch, Bench, IS_COUNTED, IS_FIRST, IS_RECALLED, IS_TESTED, Piece, Stage},
     runs::{Run, is_plain_sphere},
-    shade::Shading,
+    shade_pass::Shading,
     store::{Ring, Store},
     survey,
     table::{Known, Table, bound_of_sphere},
