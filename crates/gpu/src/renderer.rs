@@ -29,6 +29,15 @@ const LATER_SHARE: usize = 64;
 
 /// Draws spheres exactly, through wgpu.
 ///
+/// At each pixel the picture shows what [`Camera`] defines: the nearest point where its ray enters a
+/// sphere, at a view depth of at least [`View::near`]; of equal depths the one with the lower
+/// [`puncta_core::Scene::id`]. It does not depend on the order of drawing, on [`Setup`], or on what
+/// was left out because it is hidden.
+///
+/// A picture is of one content: drawing another one into it is [`Error::OtherContent`].
+///
+/// # Examples
+///
 /// See the [crate's page](crate).
 #[derive(Debug)]
 pub struct GpuRenderer {
