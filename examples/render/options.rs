@@ -2,11 +2,7 @@
 
 use clap::{Parser, ValueEnum};
 use glam::DVec3;
-use puncta::{
-    Background, ColorMap,
-    gpu::{Fragment, Setup},
-    io::synthetic::Generator,
-};
+use puncta::{Background, ColorMap, io::synthetic::Generator};
 use std::{num::NonZero, path::PathBuf};
 
 /// Draws a particle or point file, or a synthetic scene, exactly, on the CPU or a GPU.
@@ -110,11 +106,11 @@ pub(crate) struct Options {
     /// How spheres become fragments: instanced, pulled, triangle, mesh or compute; by default what
     /// suits the GPU
     #[arg(long, value_name = "SETUP")]
-    pub(crate) setup: Option<Setup>,
+    pub(crate) setup: Option<String>,
 
     /// What fragments do: sphere or sphere-early; point and proxy are not exact
     #[arg(long, value_name = "FRAGMENT")]
-    pub(crate) fragment: Option<Fragment>,
+    pub(crate) fragment: Option<String>,
 
     /// Threads to draw with, at most 1024; all cores by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
