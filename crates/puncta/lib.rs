@@ -13,7 +13,7 @@ pub use puncta_core::{
     Pipeline, Progress, Projection, Record, Renderer, Scene, Source, Sphere, Stage, Step, View,
     Visible,
 };
-pub use puncta_cpu::{Background, ColorMap, Coloring, CpuRenderer, Shading, shade};
+pub use puncta_cpu::{Background, ColorMap, Coloring, Colors, CpuRenderer, Shading, shade};
 #[cfg(feature = "gpu")]
 pub use puncta_gpu::{Gpu, GpuConfig, GpuRenderer};
 #[cfg(all(target_endian = "little", any(unix, windows)))]

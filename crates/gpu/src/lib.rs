@@ -70,6 +70,7 @@ of its own. To keep a program going meanwhile, let [`Live`](puncta_core::Live) d
 latest view takes over at the next one.
 */
 
+mod compositor;
 mod config;
 mod error;
 mod exact;
@@ -78,20 +79,28 @@ mod frame;
 mod gpu;
 mod kernel;
 mod kernels;
+mod paint;
 mod raster;
 mod renderer;
 mod residency;
 mod round;
 mod runs;
+mod shade;
+mod shade_list;
+mod shaded;
 mod store;
 mod survey;
 mod table;
 mod target;
 
 pub use crate::{
+    compositor::{Compositor, CompositorConfig, CompositorDepth},
     config::{Fragment, GpuConfig, Setup, Skipping},
     error::Error,
     gpu::{Extent, Gpu},
+    paint::Paint,
     renderer::GpuRenderer,
+    shade::ShadeConfig,
+    shaded::Shaded,
 };
 pub use wgpu;

@@ -10,6 +10,7 @@ use crate::{
     residency::SEGMENT,
     round::{Batch, Bench, IS_COUNTED, IS_FIRST, IS_RECALLED, IS_TESTED, Piece, Stage},
     runs::{Run, is_plain_sphere},
+    shade::Shading,
     store::{Ring, Store},
     survey,
     table::{Known, Table, bound_of_sphere},
@@ -42,18 +43,20 @@ const LATER_SHARE: usize = 64;
 #[derive(Debug)]
 pub struct GpuRenderer {
     pub(crate) gpu: Gpu,
-    config: GpuConfig,
+    pub(crate) config: GpuConfig,
     setup: Setup,
     fragment: Fragment,
     pub(crate) kernels: Kernels,
     pub(crate) raster: Raster,
     pub(crate) bench: Bench,
-    ring: Ring,
+    pub(crate) ring: Ring,
     pub(crate) store: Option<Store>,
     pub(crate) frame: Option<Frame>,
     /// The picture before, if it may be recalled.
     last: Option<Frame>,
-    round: u64,
+    pub(crate) round: u64,
+    /// What shading needs, once something was shaded.
+    pub(crate) shading: Option<Shading>,
 }
 
 /// A picture that is being drawn.
@@ -248,6 +251,7 @@ impl GpuRenderer {
             frame: None,
             last: None,
             round: 0,
+            shading: None,
         })
     }
 
@@ -292,7 +296,7 @@ impl GpuRenderer {
     }
 
     /// Checks what is to be drawn, and gets ready for it. Returns which bricks these are.
-    fn prepare<R: Record>(
+    pub(crate) fn prepare<R: Record>(
         &mut self,
         content: &Content<'_, R>,
         bricks: &[VisibleBrick],
@@ -383,7 +387,7 @@ impl GpuRenderer {
         Ok(())
     }
 
-    fn take(&mut self, segment: u32, batch: &mut Batch) -> Option<u32> {
+    pub(crate) fn take(&mut self, segment: u32, batch: &mut Batch) -> Option<u32> {
         self.store.as_mut().and_then(|store| store.take(segment, self.round, &mut batch.missing))
     }
 
