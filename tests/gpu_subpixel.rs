@@ -89,7 +89,7 @@ fn no_sphere_in_view_is_lost() {
         let bounds = puncta::core::Aabb { min: at.as_vec3(), max: at.as_vec3() };
         let brick = puncta::Brick { records: 0..1, bounds, radius_max: 1e-6, density: 0.0 };
         let bricks = vec![brick];
-        let mut count = |pipeline: &mut Pipeline<(), GpuRenderer>| {
+        let count = |pipeline: &mut Pipeline<(), GpuRenderer>| {
             let picture = pipeline.render(&scene, &bricks, &view).unwrap();
             picture.id.iter().filter(|id| **id != NO_RECORD).count()
         };

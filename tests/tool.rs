@@ -3,7 +3,8 @@
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
-    reason = "a test may panic, and its numbers are small"
+    clippy::print_stdout,
+    reason = "a test may panic and talk, and its numbers are small"
 )]
 
 use std::{
