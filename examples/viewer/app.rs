@@ -198,10 +198,10 @@ impl App {
     }
 
     fn take_engine(&mut self, engine: Engine) {
-        (self.backend, self.notice) = match &engine.notice {
-            Some(notice) => (engine.backend, notice.clone()),
-            None => (engine.backend, format!("drawing with {}", engine.name)),
-        };
+        self.backend = engine.backend;
+        if let Some(notice) = &engine.notice {
+            self.notice.clone_from(notice);
+        }
         if let Some(before) = self.engine.replace(engine) {
             // It may be in the middle of a step, and the window does not wait.
             std::thread::spawn(move || drop(before));

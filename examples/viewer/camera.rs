@@ -54,10 +54,6 @@ impl Camera {
         &self.view
     }
 
-    pub(crate) const fn target(&self) -> DVec3 {
-        self.target
-    }
-
     pub(crate) fn distance(&self) -> f64 {
         (self.target - self.view.eye()).length()
     }
@@ -201,7 +197,7 @@ mod tests {
     #[test]
     fn a_turn_keeps_the_target_in_the_middle_and_the_horizon_level() {
         let mut camera = camera();
-        let (target, distance) = (camera.target(), camera.distance());
+        let (target, distance) = (camera.target, camera.distance());
         for _ in 0..100 {
             camera.turn(Pivot::Target, 0.3, 0.2);
         }
@@ -232,7 +228,7 @@ mod tests {
     #[test]
     fn a_pan_moves_the_target_with_the_pointer() {
         let mut camera = camera();
-        let target = camera.target();
+        let target = camera.target;
         camera.pan(DVec2::new(30.0, -20.0));
         let (pixel, _) = pixel_of(camera.view(), target).unwrap();
         assert!((pixel - DVec2::new(349.5, 219.5)).length() < 1e-6, "{pixel}");

@@ -10,6 +10,9 @@ use std::{
 /// How many pictures are kept.
 const KEPT: usize = 120;
 
+/// The width of what stands beside the lines.
+const LABELS: f32 = 36.0;
+
 /// The lowest and the highest line of the graph, as powers of ten of a second.
 const DECADES: [i32; 2] = [-3, 1];
 
@@ -56,11 +59,11 @@ impl History {
 
     /// The graph, with a legend below.
     pub(crate) fn show(&self, ui: &mut Ui) {
-        let size = vec2(ui.available_width(), 92.0);
+        let size = vec2(ui.available_width(), 96.0);
         let (response, painter) = ui.allocate_painter(size, Sense::hover());
         let rect = response.rect;
         painter.rect_filled(rect, 4.0, theme::WELL);
-        let inner = rect.shrink2(vec2(6.0, 6.0));
+        let inner = rect.shrink2(vec2(6.0, 8.0));
         let height = |seconds: f64| {
             let [low, high] = DECADES.map(f64::from);
             let share = ((seconds.max(1e-9).log10() - low) / (high - low)).clamp(0.0, 1.0);
@@ -68,15 +71,15 @@ impl History {
         };
         for decade in DECADES[0]..=DECADES[1] {
             let y = height(10_f64.powi(decade));
-            painter.hline(inner.x_range(), y, Stroke::new(1.0, theme::PANEL));
+            let line = inner.left() + LABELS..=inner.right();
+            painter.hline(line, y, Stroke::new(1.0, theme::LINE));
             let text = ["1 ms", "10 ms", "100 ms", "1 s", "10 s"];
             let text = usize::try_from(decade - DECADES[0]).ok().and_then(|i| text.get(i));
-            let at = Pos2::new(inner.left(), y + 1.0);
+            let at = Pos2::new(inner.left(), y);
             let font = FontId::proportional(9.0);
-            let align = if decade == DECADES[1] { Align2::LEFT_TOP } else { Align2::LEFT_BOTTOM };
-            painter.text(at, align, text.unwrap_or(&""), font, theme::FAINT);
+            painter.text(at, Align2::LEFT_CENTER, text.unwrap_or(&""), font, theme::FAINT);
         }
-        let step = (inner.width() - 36.0) / KEPT as f32;
+        let step = (inner.width() - LABELS) / KEPT as f32;
         for (place, entry) in self.entries.iter().rev().enumerate() {
             let x = inner.right() - (place as f32 + 0.5) * step;
             let answer = Pos2::new(x, height(entry.answer.as_secs_f64()));

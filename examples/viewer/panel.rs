@@ -8,11 +8,15 @@ use crate::{
     progress, theme, viewport,
 };
 use egui::{
-    Align, CentralPanel, ComboBox, Frame, Grid, Layout, Margin, Panel, ProgressBar, RichText,
-    ScrollArea, Slider, TextEdit, Ui,
+    Align, ComboBox, Grid, Layout, Margin, ProgressBar, Rect, RichText, ScrollArea, Slider,
+    TextEdit, Ui, UiBuilder,
 };
 use puncta::{ColorMap, Projection};
 use std::time::Duration;
+
+/// The width of the panel beside the picture, and the height of the line below it, in points.
+const PANEL_WIDTH: f32 = 272.0;
+const STATE_HEIGHT: f32 = 32.0;
 
 /// What the pointer and the keys do.
 const HELP: [(&str, &str); 11] = [
@@ -32,19 +36,19 @@ const HELP: [(&str, &str); 11] = [
 impl App {
     /// The whole window.
     pub(crate) fn show(&mut self, ui: &mut Ui) {
-        let margin = Margin::symmetric(12, 5);
-        let frame = Frame::new().fill(theme::PANEL).inner_margin(margin);
-        Panel::bottom("state").frame(frame).show(ui, |ui| self.show_state(ui));
+        // The places are reckoned here and not found by what is in them: each change of the picture's
+        // size is a picture to draw.
+        let whole = ui.max_rect();
+        let (above, state) = whole.split_top_bottom_at_y(whole.bottom() - STATE_HEIGHT);
+        let side = if self.has_panel { above.right() - PANEL_WIDTH } else { above.right() };
+        let (picture, panel) = above.split_left_right_at_x(side.max(above.left()));
+        within(ui, picture, Margin::ZERO, |ui| viewport::show(self, ui));
+        within(ui, state, Margin::symmetric(12, 3), |ui| self.show_state(ui));
         if self.has_panel {
-            let frame = Frame::new().fill(theme::PANEL).inner_margin(Margin::same(12));
-            Panel::right("choices").frame(frame).resizable(false).exact_size(268.0).show(
-                ui,
-                |ui| {
-                    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.show_panel(ui));
-                },
-            );
+            within(ui, panel, Margin::same(12), |ui| {
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.show_panel(ui));
+            });
         }
-        CentralPanel::no_frame().show(ui, |ui| viewport::show(self, ui));
         self.show_error(ui);
         if let Some(delay) = self.ask() {
             ui.ctx().request_repaint_after(delay);
@@ -70,13 +74,16 @@ impl App {
         });
         ui.add_space(8.0);
         ui.collapsing("Mouse and keys", |ui| {
-            Grid::new("help").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
-                for (key, what) in HELP {
-                    ui.label(RichText::new(key).small());
-                    ui.label(RichText::new(what).small().color(theme::FAINT));
-                    ui.end_row();
-                }
-            });
+            Grid::new("help").num_columns(2).spacing([12.0, 1.0]).min_row_height(14.0).show(
+                ui,
+                |ui| {
+                    for (key, what) in HELP {
+                        ui.label(RichText::new(key).small());
+                        ui.label(RichText::new(what).small().color(theme::FAINT));
+                        ui.end_row();
+                    }
+                },
+            );
         });
     }
 
@@ -229,18 +236,21 @@ impl App {
 
     fn show_counts(&self, ui: &mut Ui) {
         let progress = self.progress;
-        Grid::new("counts").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
-            for (name, count) in [
-                ("drawn", progress.drawn.records),
-                ("hidden, skipped", progress.skipped.records),
-                ("out of view", progress.culled.records),
-                ("seen before", progress.recalled),
-            ] {
-                ui.label(RichText::new(name).small().color(theme::FAINT));
-                ui.label(RichText::new(grouped(count)).small().monospace());
-                ui.end_row();
-            }
-        });
+        Grid::new("counts").num_columns(2).spacing([12.0, 1.0]).min_row_height(14.0).show(
+            ui,
+            |ui| {
+                for (name, count) in [
+                    ("drawn", progress.drawn.records),
+                    ("hidden, skipped", progress.skipped.records),
+                    ("out of view", progress.culled.records),
+                    ("seen before", progress.recalled),
+                ] {
+                    ui.label(RichText::new(name).small().color(theme::FAINT));
+                    ui.label(RichText::new(grouped(count)).small().monospace());
+                    ui.end_row();
+                }
+            },
+        );
     }
 
     /// The line at the bottom.
@@ -310,8 +320,17 @@ impl App {
     }
 }
 
+/// Shows something in a part of the window, and nothing beyond it.
+fn within(ui: &mut Ui, rect: Rect, margin: Margin, content: impl FnOnce(&mut Ui)) {
+    ui.painter().rect_filled(rect, 0.0, theme::PANEL);
+    ui.scope_builder(UiBuilder::new().max_rect(rect - margin), |ui| {
+        ui.set_clip_rect(rect.intersect(ui.clip_rect()));
+        content(ui);
+    });
+}
+
 fn section(ui: &mut Ui, title: &str, content: impl FnOnce(&mut Ui)) {
-    ui.add_space(8.0);
+    ui.add_space(3.0);
     ui.separator();
     ui.label(RichText::new(title).strong().color(theme::ACCENT));
     content(ui);
@@ -320,8 +339,11 @@ fn section(ui: &mut Ui, title: &str, content: impl FnOnce(&mut Ui)) {
 /// A name, and what can be chosen.
 fn row(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui)) {
     ui.horizontal(|ui| {
-        let label = RichText::new(name).color(theme::FAINT);
-        ui.add_sized([44.0, 20.0], egui::Label::new(label).halign(Align::Min));
+        let size = egui::vec2(44.0, ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_size(size);
+            ui.label(RichText::new(name).color(theme::FAINT));
+        });
         content(ui);
     });
 }

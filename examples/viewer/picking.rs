@@ -107,37 +107,42 @@ impl Pick {
     pub(crate) fn describe(&self, ui: &mut Ui) {
         let index = self.index as usize;
         let attributes = &self.scene.attributes;
-        Grid::new("particle").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
-            let mut row = |name: &str, value: String| {
-                ui.label(RichText::new(name).color(theme::FAINT));
-                ui.label(RichText::new(value).monospace());
-                ui.end_row();
-            };
-            row("id", self.id.to_string());
-            if let Some(&number) = attributes.elements.as_ref().and_then(|all| all.get(index)) {
-                let symbol = elements::symbol(number).unwrap_or("unknown");
-                row("element", symbol.to_owned());
-            }
-            let digits = digits(&self.scene);
-            for (axis, value) in ["x", "y", "z"].into_iter().zip(self.position().to_array()) {
-                row(axis, format!("{value:.digits$}"));
-            }
-            row("radius", format!("{}", self.radius()));
-            for scalar in &attributes.scalars {
-                let value = scalar.values.get(index).copied().unwrap_or(f32::NAN);
-                row(&scalar.name, format!("{value}"));
-            }
-            if let Some(&[r, g, b, _]) = attributes.colors.as_ref().and_then(|all| all.get(index)) {
-                ui.label(RichText::new("color").color(theme::FAINT));
-                ui.horizontal(|ui| {
-                    let text =
-                        RichText::new("  \u{2003}").background_color(Color32::from_rgb(r, g, b));
-                    ui.label(text);
-                    ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}")).monospace());
-                });
-                ui.end_row();
-            }
-        });
+        Grid::new("particle").num_columns(2).spacing([12.0, 2.0]).min_row_height(16.0).show(
+            ui,
+            |ui| {
+                let mut row = |name: &str, value: String| {
+                    ui.label(RichText::new(name).color(theme::FAINT));
+                    ui.label(RichText::new(value).monospace());
+                    ui.end_row();
+                };
+                row("id", self.id.to_string());
+                if let Some(&number) = attributes.elements.as_ref().and_then(|all| all.get(index)) {
+                    let symbol = elements::symbol(number).unwrap_or("unknown");
+                    row("element", symbol.to_owned());
+                }
+                let digits = digits(&self.scene);
+                for (axis, value) in ["x", "y", "z"].into_iter().zip(self.position().to_array()) {
+                    row(axis, format!("{value:.digits$}"));
+                }
+                row("radius", format!("{}", self.radius()));
+                for scalar in &attributes.scalars {
+                    let value = scalar.values.get(index).copied().unwrap_or(f32::NAN);
+                    row(&scalar.name, format!("{value}"));
+                }
+                if let Some(&[r, g, b, _]) =
+                    attributes.colors.as_ref().and_then(|all| all.get(index))
+                {
+                    ui.label(RichText::new("color").color(theme::FAINT));
+                    ui.horizontal(|ui| {
+                        let text = RichText::new("  \u{2003}")
+                            .background_color(Color32::from_rgb(r, g, b));
+                        ui.label(text);
+                        ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}")).monospace());
+                    });
+                    ui.end_row();
+                }
+            },
+        );
     }
 }
 

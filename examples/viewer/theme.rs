@@ -11,7 +11,7 @@ pub(crate) const FAINT: Color32 = Color32::from_rgb(134, 144, 160);
 pub(crate) const PANEL: Color32 = Color32::from_rgb(23, 26, 32);
 pub(crate) const WELL: Color32 = Color32::from_rgb(15, 17, 21);
 const BUTTON: Color32 = Color32::from_rgb(41, 47, 57);
-const LINE: Color32 = Color32::from_rgb(46, 52, 63);
+pub(crate) const LINE: Color32 = Color32::from_rgb(46, 52, 63);
 
 pub(crate) fn apply(context: &Context) {
     context.set_theme(ThemePreference::Dark);

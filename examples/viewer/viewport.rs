@@ -44,7 +44,7 @@ pub(crate) fn show(app: &mut App, ui: &mut Ui) {
     }
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 0.0, theme::WELL);
-    let response = ui.interact(rect, egui::Id::new("picture"), Sense::click_and_drag());
+    let response = ui.interact(rect, egui::Id::unique("picture"), Sense::click_and_drag());
     let frame = paint(app, &painter, rect);
     point(app, &response, frame, f64::from(scale));
     keys(app, ui);
@@ -215,7 +215,9 @@ fn legend(app: &App, shown: &Shown, painter: &Painter, rect: Rect) {
     for (share, align) in
         [(0.0, Align2::LEFT_BOTTOM), (0.5, Align2::LEFT_CENTER), (1.0, Align2::LEFT_TOP)]
     {
-        let value = number(low + (high - low) * share);
+        let value = low + (high - low) * share;
+        // What is left of a difference says nothing.
+        let value = number(if value.abs() < 1e-4 * (high - low) { 0.0 } else { value });
         let at = pos2(bar.right() + 8.0, bar.bottom() - bar.height() * share as f32);
         painter.text(at, align, value, font.clone(), theme::TEXT);
     }
