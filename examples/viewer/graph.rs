@@ -94,7 +94,7 @@ impl History {
         let last = self.entries.back();
         let settled = self.entries.iter().rev().find_map(|entry| entry.settled);
         ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 10.0;
+            ui.spacing_mut().item_spacing.x = 6.0;
             let mut tell = |name, color, time: Option<Duration>| {
                 let text = format!("{name} {}", time.map_or("-".to_owned(), self::time));
                 ui.label(egui::RichText::new(text).small().color(color));
@@ -110,7 +110,7 @@ impl History {
 pub(crate) fn time(time: Duration) -> String {
     let seconds = time.as_secs_f64();
     match seconds {
-        _ if seconds < 0.0995 => format!("{:.1} ms", seconds * 1e3),
+        _ if seconds < 0.00995 => format!("{:.1} ms", seconds * 1e3),
         _ if seconds < 0.9995 => format!("{:.0} ms", seconds * 1e3),
         _ => format!("{seconds:.1} s"),
     }

@@ -66,12 +66,6 @@ impl App {
             self.history.show(ui);
             self.show_counts(ui);
         });
-        section(ui, "Particle", |ui| match &self.pick {
-            Some(pick) => pick.describe(ui),
-            None => {
-                ui.label(RichText::new("click one to see what it is").color(theme::FAINT));
-            }
-        });
         ui.add_space(8.0);
         ui.collapsing("Mouse and keys", |ui| {
             Grid::new("help").num_columns(2).spacing([12.0, 1.0]).min_row_height(14.0).show(

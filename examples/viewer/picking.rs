@@ -72,11 +72,11 @@ impl Pick {
         let radius = (place(edge).x - center.x).max(3.0) + 2.5;
         let strength = if self.is_seen(&shown.view, shown, (pixel, scale)) { 1.0 } else { 0.4 };
         let shadow = Color32::BLACK.gamma_multiply(0.6 * strength);
-        painter.circle_stroke(center, radius, Stroke::new(4.5, shadow));
+        painter.circle_stroke(center, radius, Stroke::new(5.0, shadow));
         painter.circle_stroke(
             center,
             radius,
-            Stroke::new(2.0, theme::WARM.gamma_multiply(strength)),
+            Stroke::new(2.0, Color32::WHITE.gamma_multiply(strength)),
         );
     }
 

@@ -52,6 +52,9 @@ pub(crate) fn show(app: &mut App, ui: &mut Ui) {
         if let Some(pick) = &app.pick {
             pick.mark(&painter, shown, |pixel| frame.point(pixel));
         }
+        if let Some(pick) = &app.pick {
+            card(pick, ui, rect);
+        }
         legend(app, shown, &painter, rect);
         scale_bar(app, &painter, rect, scale);
     } else if app.error.is_none() {
@@ -184,6 +187,19 @@ fn keys(app: &mut App, ui: &Ui) {
         app.is_held = true;
         ctx.request_repaint();
     }
+}
+
+/// What is known of the particle that was picked.
+fn card(pick: &Pick, ui: &Ui, rect: Rect) {
+    let area = egui::Area::new(egui::Id::unique("particle")).fixed_pos(rect.min + vec2(12.0, 12.0));
+    area.show(ui.ctx(), |ui| {
+        let fill = Color32::from_black_alpha(170);
+        let frame = egui::Frame::new().fill(fill).corner_radius(6.0).inner_margin(10.0);
+        frame.show(ui, |ui| {
+            ui.set_max_height((rect.height() - 220.0).max(60.0));
+            egui::ScrollArea::vertical().show(ui, |ui| pick.describe(ui));
+        });
+    });
 }
 
 /// Explains the color map.

@@ -120,6 +120,7 @@ fn open(options: &Options) -> Result<Content> {
         bail!("{}: there are no particles in it", input.name);
     }
     let home = view::choose(options, &input)?;
+    let middle = middle(&view::bounds(&input));
     let known = input.known.as_mut().and_then(|known| known.grid.take());
     let is_fixed = input.known.is_some();
     let grid = match (known, options.grid) {
@@ -132,7 +133,7 @@ fn open(options: &Options) -> Result<Content> {
             Grid::sort_scene(&mut input.scene, &GridConfig { resolution, ..Default::default() })?
         }
     };
-    let Input { name, format, scene, bounds, notices, up, scalar, outlook, known, .. } = input;
+    let Input { name, format, scene, notices, up, scalar, outlook, known, .. } = input;
     let up = options.up.unwrap_or(up);
     let palette = Palette::new(&scene, (known.as_ref(), outlook), (scalar.as_deref(), up));
     let scene = Arc::new(scene);
@@ -147,7 +148,7 @@ fn open(options: &Options) -> Result<Content> {
         is_fixed,
         home,
         up,
-        middle: middle(&bounds),
+        middle,
         palette,
     })
 }
