@@ -6,7 +6,7 @@ use puncta::{Background, ColorMap, io::synthetic::Generator};
 use std::{num::NonZero, path::PathBuf};
 
 /// Draws a particle or point file, or a synthetic scene, exactly, on the CPU or a GPU.
-#[derive(Debug, Parser)]
+#[derive(Clone, Debug, Parser)]
 #[command(name = "render", version, after_help = after_help())]
 pub(crate) struct Options {
     /// A file (XYZ, extended XYZ, LAMMPS dump, PDB, MMPLD, PLY, LAS, LAZ, legacy VTK; gzip is fine),
@@ -131,6 +131,20 @@ pub(crate) struct Options {
     /// Write counts, bytes and seconds
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
+
+    /// Which scalars to read besides the one to color by: not for the command line.
+    #[arg(skip)]
+    pub(crate) columns: Columns,
+}
+
+/// Which scalars to read of a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Columns {
+    /// That to color by.
+    #[default]
+    Needed,
+    /// All, to choose among them later.
+    All,
 }
 
 /// What draws.
