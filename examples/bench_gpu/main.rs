@@ -91,6 +91,9 @@ pub(crate) struct Options {
     /// What to use of what the adapter has
     #[arg(long, value_enum, default_value_t = Use::Full)]
     extent: Use,
+    /// Tell how far memory grows with one of the ways to bring particles, and nothing else
+    #[arg(long, hide = true)]
+    growth: Option<usize>,
     /// Write all times here
     #[arg(long, value_name = "FILE.json")]
     json: Option<PathBuf>,
@@ -129,6 +132,15 @@ enum Use {
     Full,
 }
 
+impl Use {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Core => "core",
+            Self::Full => "full",
+        }
+    }
+}
+
 fn main() {
     if let Err(error) = run(&Options::parse()) {
         // Nobody may be listening any more.
@@ -141,11 +153,15 @@ fn run(options: &Options) -> Result<()> {
     ensure!(options.runs > 0 && options.turns > 0, "nothing is to be measured");
     let extent = if options.extent == Use::Core { Extent::Core } else { Extent::Full };
     let gpu = Gpu::new(options.adapter.as_deref(), extent)?;
+    if let Some(place) = options.growth {
+        tell(&uploads::growth(&gpu, options, place)?);
+        return Ok(());
+    }
     tell(&format!(
         "{}, {}; {} threads; {} pixels; at most {} runs or {} s each; ms, in brackets those of all \
          processors together\n",
         gpu.name(),
-        if options.extent == Use::Core { "core" } else { "full" },
+        options.extent.name(),
         rayon::current_num_threads(),
         options.size,
         options.runs,

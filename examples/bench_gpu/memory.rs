@@ -3,7 +3,7 @@
 use std::fs;
 
 /// Now and at most, in bytes; `None` where the system does not tell.
-pub(crate) fn resident() -> Option<[u64; 2]> {
+fn resident() -> Option<[u64; 2]> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let find = |key: &str| {
         let line = status.lines().find(|line| line.starts_with(key))?;
@@ -14,7 +14,7 @@ pub(crate) fn resident() -> Option<[u64; 2]> {
 }
 
 /// Forgets how much was used at most; whether that is possible.
-pub(crate) fn forget_peak() -> bool {
+fn forget_peak() -> bool {
     fs::write("/proc/self/clear_refs", "5").is_ok()
 }
 

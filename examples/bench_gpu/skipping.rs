@@ -3,10 +3,10 @@
 
 use crate::{
     Options,
-    clock::{Span, time},
+    clock::{Span, median, time},
     place::{Place, roomy},
     progress::Bar,
-    table::{Table, cell, in_turn, number, times, wall},
+    table::{Table, cell, in_turn, number, times},
 };
 use anyhow::{Result, ensure};
 use puncta::{
@@ -153,10 +153,14 @@ fn second(
 }
 
 impl Measured {
-    /// The time until a picture is settled, of that in which everything is drawn.
-    fn share(&self, way: usize) -> f64 {
-        let wall = |way: usize| wall(&self.frames[way]).unwrap_or(f64::NAN);
-        wall(way) / wall(2)
+    /// The time until a picture is settled, of that in which everything is drawn: at the wall, and of
+    /// the processors.
+    fn shares(&self) -> [f64; 2] {
+        let [settled, _, everything] = &self.frames;
+        match median(settled).zip(median(everything)) {
+            Some((a, b)) => [a.wall / b.wall, a.processors / b.processors],
+            None => [f64::NAN; 2],
+        }
     }
 }
 
@@ -193,7 +197,8 @@ pub(crate) fn table(name: &str, rows: &[Row]) -> String {
         };
         let mut cells = vec![row.setup.to_string()];
         cells.extend(row.frames.iter().map(|spans| cell(spans)));
-        cells.push(format!("{:.3}", row.share(0)));
+        let [wall, processors] = row.shares();
+        cells.push(format!("{wall:.3} ({processors:.3})"));
         cells.push(row.progress.drawn.records.to_string());
         cells.push(row.progress.skipped.records.to_string());
         cells.push(row.differing.to_string());
@@ -229,7 +234,7 @@ pub(crate) fn json(rows: &[Row]) -> Value {
             "settled": times(&row.frames[0]),
             "settled_in_steps": times(&row.frames[1]),
             "everything": times(&row.frames[2]),
-            "share": row.share(0),
+            "shares": row.shares(),
             "drawn": row.progress.drawn.records,
             "skipped": row.progress.skipped.records,
             "differing": row.differing,

@@ -117,6 +117,14 @@ impl Desk {
         Ok(Self { gpu: gpu.clone(), target, pipeline, picture })
     }
 
+    /// Brings particles, and waits until that is done.
+    pub(crate) fn bring(&self, way: &mut Way, bytes: &[u8]) -> Result<()> {
+        way.bring(&self.gpu, &self.target, bytes)?;
+        self.gpu.queue().submit([]);
+        self.gpu.device().poll(wgpu::PollType::wait_indefinitely())?;
+        Ok(())
+    }
+
     /// Brings particles and draws them, and waits until that is done.
     pub(crate) fn frame(&self, way: &mut Way, bytes: &[u8]) -> Result<()> {
         way.bring(&self.gpu, &self.target, bytes)?;
