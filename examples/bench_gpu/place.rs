@@ -85,10 +85,10 @@ impl Away {
         Ok(Self { view, bricks: bricks.iter().map(reaching).collect() })
     }
 
-    /// Draws all of it, which shows nothing.
-    pub(crate) fn draw(
+    /// Draws all of it, which shows nothing but brings all records to the device.
+    pub(crate) fn draw<S: Stage<Vec<Brick>>>(
         &self,
-        pipeline: &mut Pipeline<(), GpuRenderer>,
+        pipeline: &mut Pipeline<S, GpuRenderer>,
         scene: &Scene<Sphere>,
     ) -> Result<()> {
         let drawn = draw(pipeline, (scene, &self.bricks), &self.view)?;

@@ -33,6 +33,7 @@ pub(crate) fn write(adapter: &str, scenes: &[(String, Vec<Row>)], path: &Path) -
         .disable_x_mesh()
         .x_labels(labels.len() + 3)
         .x_label_formatter(&label)
+        .x_desc(legend(scenes))
         .y_desc("milliseconds a frame; open: geometry only")
         .light_line_style(BLACK.mix(0.04))
         .draw()?;
@@ -92,6 +93,15 @@ fn setups(rows: &[Row]) -> Vec<Setup> {
         rows.iter().any(|row| matches!(row, Row::Measured(row) if row.setup == *setup))
     };
     Setup::ALL.into_iter().filter(has).collect()
+}
+
+/// Which scene is which.
+fn legend(scenes: &[(String, Vec<Row>)]) -> String {
+    let names: Vec<String> = match scenes {
+        [(name, _)] => vec![name.clone()],
+        _ => (1..).zip(scenes).map(|(number, (name, _))| format!("{number}: {name}")).collect(),
+    };
+    names.join(", ")
 }
 
 /// The names along the horizontal axis.

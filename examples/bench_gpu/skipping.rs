@@ -79,11 +79,13 @@ fn row(
     [mut hidden, mut nothing]: [Pipeline<Stages, GpuRenderer>; 2],
 ) -> Result<Measured> {
     let view = &place.view;
-    // Once to bring the records. Everything is brought whatever is drawn of it.
-    settle(place, &mut hidden, (view, u64::MAX))?;
+    place.away.draw(&mut hidden, place.world.scene())?;
+    place.away.draw(&mut nothing, place.world.scene())?;
+    // What is drawn first makes what the others use.
     let differing =
         place.differing(&hidden.render(place.world.scene(), &place.world.grid, view)?);
-    settle(place, &mut nothing, (view, u64::MAX))?;
+    let world = &place.world;
+    nothing.progressive(world.scene(), &world.grid, view, 1)?.next().transpose()?;
     let mut progress = Progress::default();
     let mut ways = [0, 1, 2].map(|way| (way, vec![])).to_vec();
     in_turn(options, &mut ways, |&mut way| {
