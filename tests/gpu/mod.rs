@@ -7,7 +7,7 @@ use puncta::{
     Depth, FrustumCull, Gpu, GpuConfig, GpuRenderer, Picture, Pipeline, Renderer, Scene, Sphere,
     View, Visible,
     core::{Brick, Content},
-    gpu::{Error, Extent, Fragment, Setup, Skipping},
+    gpu::{Error, Extent, Fragment, Setup, Skipping, wgpu},
 };
 use std::sync::OnceLock;
 
@@ -78,4 +78,37 @@ pub(crate) fn of_everything(gpu: &Gpu, scene: &Scene, bricks: &[Brick], view: &V
     Renderer::<Sphere>::begin(&mut renderer, view).unwrap();
     renderer.draw(&content, &all.bricks).unwrap();
     renderer.finish(&content).unwrap()
+}
+
+/// A device as a program would have it that draws other things too: of the adapter to test, with
+/// these limits and no feature.
+pub(crate) fn own_device(required_limits: &wgpu::Limits) -> Gpu {
+    let (device, queue) = own(required_limits);
+    Gpu::from_device(device, queue)
+}
+
+/// The device and the queue of such a program.
+pub(crate) fn own(required_limits: &wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
+    own_instance(required_limits).1
+}
+
+/// The same, and what they were made by.
+pub(crate) fn own_instance(
+    required_limits: &wgpu::Limits,
+) -> (wgpu::Instance, (wgpu::Device, wgpu::Queue)) {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let wanted = std::env::var("PUNCTA_ADAPTER").unwrap_or_default().to_lowercase();
+    let name = |adapter: &wgpu::Adapter| {
+        let info = adapter.get_info();
+        format!("{} ({:?}, ", info.name, info.backend).to_lowercase()
+    };
+    let adapter = adapters.iter().find(|adapter| name(adapter).contains(&wanted)).unwrap();
+    let descriptor = wgpu::DeviceDescriptor {
+        label: Some("a program's own"),
+        required_limits: required_limits.clone(),
+        ..Default::default()
+    };
+    let own = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
+    (instance, own)
 }

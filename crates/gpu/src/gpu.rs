@@ -178,9 +178,24 @@ impl Gpu {
             return Err(Error::OutOfMemory { what: what.to_owned() });
         }
         match refused {
+            Some(error) if self.is_gone() => Err(Error::Lost { reason: error.to_string() }),
             Some(error) => Err(Error::Refused { what: error.to_string() }),
             None => Ok(result),
         }
+    }
+
+    /// Whether the device can do nothing any more, found by trying: of a user's own device it is not
+    /// told. What is made on a lost device is no error, but it cannot be used.
+    fn is_gone(&self) -> bool {
+        let validation = self.device.push_error_scope(ErrorFilter::Validation);
+        let probe = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("Gpu::probe"),
+            size: 16,
+            usage: wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        probe.map_async(wgpu::MapMode::Read, .., |_| {});
+        pollster::block_on(validation.pop()).is_some()
     }
 
     /// Whether the device is still there.

@@ -81,7 +81,7 @@ pub(crate) struct Frame {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     origin: glam::DVec3,
-    records: (u64, usize),
+    records: (u64, u64, usize),
     bricks: (usize, usize),
 }
 
@@ -89,7 +89,7 @@ impl Key {
     fn of<R: Record>(content: &Content<'_, R>) -> Self {
         Self {
             origin: content.scene.origin,
-            records: (content.scene.records.version(), content.scene.records.len()),
+            records: crate::store::key(content.scene),
             bricks: (content.bricks.as_ptr() as usize, content.bricks.len()),
         }
     }
