@@ -168,7 +168,7 @@ fn an_orbit_changes_the_picture() {
 }
 
 #[test]
-fn a_drag_turns_and_a_wheel_zooms() {
+fn a_drag_turns_a_wheel_zooms_and_a_key_writes() {
     let Some(screen) = Screen::new() else { return };
     let pointer = |arguments: &str| {
         let arguments = arguments.split(' ');
@@ -178,8 +178,10 @@ fn a_drag_turns_and_a_wheel_zooms() {
         println!("there is no xdotool: nothing is dragged");
         return;
     }
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("key.png");
     let arguments = [SCENE, "--backend", "cpu", "--size", "600x400", "--supersample", "1", "--log"];
-    let viewer = screen.viewer(&arguments);
+    let viewer = screen.viewer(&[&arguments[..], &["--out", out.to_str().unwrap()]].concat());
     let part = |line: &str, name: &str| {
         line.split_once(name).unwrap().1.split([']', ' ']).next().unwrap().to_owned()
     };
@@ -193,6 +195,14 @@ fn a_drag_turns_and_a_wheel_zooms() {
     let count = |line: &str| part(line, "covered=").parse::<u32>().unwrap();
     assert!(pointer("click --repeat 3 --delay 50 4").unwrap().success());
     viewer.settled(|line| count(line) > count(&turned) * 5 / 4);
+    // Without a window manager nothing has the focus.
+    let focus = "search --onlyvisible --name puncta windowfocus --sync %1";
+    assert!(pointer(&format!("{focus} key p")).unwrap().success());
+    let start = Instant::now();
+    while !out.exists() {
+        assert!(start.elapsed() < PATIENCE, "the key P writes nothing");
+        thread::sleep(Duration::from_millis(50));
+    }
 }
 
 #[test]

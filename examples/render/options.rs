@@ -144,6 +144,7 @@ pub(crate) enum Columns {
     #[default]
     Needed,
     /// All, to choose among them later.
+    #[allow(dead_code, reason = "only the example `viewer` asks for it")]
     All,
 }
 

@@ -285,6 +285,7 @@ impl App {
         if let Err(error) = engine.live.look(next.clone()) {
             self.error = Some(error.to_string());
         }
+        self.progress.open = u64::from(next.width()) * u64::from(next.height());
         self.asked = Some(next);
         Some(REST)
     }

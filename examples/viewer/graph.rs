@@ -67,7 +67,7 @@ impl History {
         let height = |seconds: f64| {
             let [low, high] = DECADES.map(f64::from);
             let share = ((seconds.max(1e-9).log10() - low) / (high - low)).clamp(0.0, 1.0);
-            inner.bottom() - inner.height() * share as f32
+            inner.bottom() - inner.height() * theme::rough(share)
         };
         for decade in DECADES[0]..=DECADES[1] {
             let y = height(10_f64.powi(decade));

@@ -26,10 +26,10 @@ const HELP: [(&str, &str); 11] = [
     ("wheel", "zoom to the pointer"),
     ("W A S D Q E", "fly, shift is faster"),
     ("click", "pick a particle"),
-    ("double click, F", "centre it"),
+    ("double click, F", "center it"),
     ("Home, R", "see everything"),
     ("P", "write the picture"),
-    ("Tab", "hide this panel"),
+    ("H", "hide this panel"),
     ("Esc", "forget the particle"),
 ];
 

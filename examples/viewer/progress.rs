@@ -2,6 +2,7 @@
 //!
 //! One thread reads at a time, so there is one bar at a time.
 
+use crate::theme::rough;
 use std::sync::{
     Mutex, PoisonError,
     atomic::{AtomicU64, Ordering},
@@ -62,6 +63,6 @@ fn set(what: Option<&'static str>) {
 pub(crate) fn now() -> Option<(&'static str, Option<f32>)> {
     let what = (*WHAT.lock().unwrap_or_else(PoisonError::into_inner))?;
     let (position, total) = (POSITION.load(Ordering::Relaxed), TOTAL.load(Ordering::Relaxed));
-    let share = (total > 0).then(|| (position as f64 / total as f64).min(1.0) as f32);
+    let share = (total > 0).then(|| rough((position as f64 / total as f64).min(1.0)));
     Some((what, share))
 }

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use egui::{ClippedPrimitive, TexturesDelta};
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
-use std::sync::Arc;
+use std::{io::Write, sync::Arc};
 use wgpu::CurrentSurfaceTexture;
 use winit::{event_loop::ActiveEventLoop, window::Window};
 
@@ -34,6 +34,10 @@ impl Surface {
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))?;
+        // By default wgpu would end the program.
+        device.on_uncaptured_error(Arc::new(|error| {
+            writeln!(std::io::stderr(), "error: the window: {error}").ok();
+        }));
         let size = window.inner_size();
         let mut config = surface
             .get_default_config(&adapter, size.width.max(1), size.height.max(1))

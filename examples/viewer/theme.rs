@@ -13,6 +13,12 @@ pub(crate) const WELL: Color32 = Color32::from_rgb(15, 17, 21);
 const BUTTON: Color32 = Color32::from_rgb(41, 47, 57);
 pub(crate) const LINE: Color32 = Color32::from_rgb(46, 52, 63);
 
+/// A number for the window: its digits are more than enough for places and sizes there.
+#[expect(clippy::cast_possible_truncation, reason = "rounding is what is meant")]
+pub(crate) const fn rough(number: f64) -> f32 {
+    number as f32
+}
+
 pub(crate) fn apply(context: &Context) {
     context.set_theme(ThemePreference::Dark);
     context.all_styles_mut(|style| {

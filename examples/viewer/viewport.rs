@@ -7,7 +7,8 @@ use crate::{
     look,
     options::ColorBy,
     picking::{self, Pick},
-    theme,
+    progress,
+    theme::{self, rough},
 };
 use egui::{
     Align2, Color32, CornerRadius, FontId, Key, Painter, PointerButton, Pos2, Rect, Response,
@@ -59,7 +60,11 @@ pub(crate) fn show(app: &mut App, ui: &mut Ui) {
         scale_bar(app, &painter, rect, scale);
     } else if app.error.is_none() {
         let (font, at) = (FontId::proportional(16.0), rect.center());
-        let text = if app.content.is_some() { "drawing ..." } else { "opening ..." };
+        let text = match (&app.content, progress::now()) {
+            (_, Some(_)) => "opening ...",
+            (Some(_), None) => "drawing ...",
+            (None, None) => "drop a file here",
+        };
         painter.text(at, Align2::CENTER_CENTER, text, font, theme::FAINT);
     }
     if ui.ctx().input(|input| !input.raw.hovered_files.is_empty()) {
@@ -87,7 +92,7 @@ impl Placed {
 
     fn point(self, pixel: DVec2) -> Pos2 {
         let offset = (pixel + 0.5) / self.scale;
-        self.rect.min + vec2(offset.x as f32, offset.y as f32)
+        self.rect.min + vec2(rough(offset.x), rough(offset.y))
     }
 }
 
@@ -161,7 +166,7 @@ fn keys(app: &mut App, ui: &Ui) {
     if pressed(Key::P) || pressed(Key::F12) {
         app.save();
     }
-    if pressed(Key::Tab) {
+    if pressed(Key::H) {
         app.has_panel = !app.has_panel;
     }
     if pressed(Key::Escape) {
@@ -234,7 +239,7 @@ fn legend(app: &App, shown: &Shown, painter: &Painter, rect: Rect) {
         let value = low + (high - low) * share;
         // What is left of a difference says nothing.
         let value = number(if value.abs() < 1e-4 * (high - low) { 0.0 } else { value });
-        let at = pos2(bar.right() + 8.0, bar.bottom() - bar.height() * share as f32);
+        let at = pos2(bar.right() + 8.0, bar.bottom() - bar.height() * rough(share));
         painter.text(at, align, value, font.clone(), theme::TEXT);
     }
 }
@@ -248,7 +253,7 @@ fn scale_bar(app: &App, painter: &Painter, rect: Rect, pixels_per_point: f32) {
     let decade = 10_f64.powf(wanted.log10().floor());
     let length = [5.0, 2.0, 1.0].map(|digit| digit * decade);
     let length = length.into_iter().find(|&length| length <= wanted).unwrap_or(decade);
-    let width = (length / per_point) as f32;
+    let width = rough(length / per_point);
     if !width.is_finite() {
         return;
     }
