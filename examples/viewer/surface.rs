@@ -3,8 +3,9 @@
 use anyhow::{Context, Result};
 use egui::{ClippedPrimitive, TexturesDelta};
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
+use puncta::gpu::wgpu;
+use puncta::gpu::wgpu::CurrentSurfaceTexture;
 use std::{io::Write, sync::Arc};
-use wgpu::CurrentSurfaceTexture;
 use winit::{event_loop::ActiveEventLoop, window::Window};
 
 /// What a window is painted on.

@@ -43,7 +43,8 @@ use anyhow::{Context, Result};
 use std::{io::Write, process::ExitCode};
 use winit::event_loop::EventLoop;
 
-fn main() -> ExitCode {
+/// Reads the command line, and shows what it names until the window is closed.
+pub fn main() -> ExitCode {
     let code = cli::parse().map_err(Into::into).and_then(run);
     code.unwrap_or_else(|error: anyhow::Error| {
         // Nobody may be listening any more.
