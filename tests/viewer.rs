@@ -34,8 +34,9 @@ impl Screen {
             println!("PUNCTA_NO_GPU: no window is opened");
             return None;
         }
+        // Without -noreset it starts anew after its last client, and refuses the next for a moment.
         let server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "800x600x24"])
+            .args(["-noreset", "-displayfd", "1", "-screen", "0", "800x600x24"])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn();
@@ -79,10 +80,16 @@ impl Viewer {
     }
 
     /// What it says of the next picture that fits.
-    fn settled(&self, fits: impl Fn(&str) -> bool) -> String {
+    fn settled(&mut self, fits: impl Fn(&str) -> bool) -> String {
         let start = Instant::now();
         loop {
-            let line = self.lines.recv_timeout(PATIENCE.saturating_sub(start.elapsed())).unwrap();
+            let line = self.lines.recv_timeout(PATIENCE.saturating_sub(start.elapsed()));
+            let line = line.unwrap_or_else(|error| {
+                self.child.kill().unwrap();
+                let mut said = String::new();
+                self.child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+                panic!("{error}, {}: {said}", self.child.wait().unwrap())
+            });
             assert!(line.starts_with("settled "), "{line}");
             if fits(&line) {
                 return line;
@@ -181,7 +188,7 @@ fn a_drag_turns_a_wheel_zooms_and_a_key_writes() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("key.png");
     let arguments = [SCENE, "--backend", "cpu", "--size", "600x400", "--supersample", "1", "--log"];
-    let viewer = screen.viewer(&[&arguments[..], &["--out", out.to_str().unwrap()]].concat());
+    let mut viewer = screen.viewer(&[&arguments[..], &["--out", out.to_str().unwrap()]].concat());
     let part = |line: &str, name: &str| {
         line.split_once(name).unwrap().1.split([']', ' ']).next().unwrap().to_owned()
     };

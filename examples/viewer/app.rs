@@ -259,8 +259,8 @@ impl App {
         self.shown = Some(shown);
     }
 
-    /// Asks for the picture that is to be seen now, if it was not asked for yet. Returns when to look
-    /// again.
+    /// Asks for the picture that is to be seen now, if it was not asked for yet. Returns when to
+    /// look again.
     pub(crate) fn ask(&mut self) -> Option<Duration> {
         let (Some(engine), Some(camera)) = (&self.engine, &self.camera) else { return None };
         let view = camera.view();

@@ -1,7 +1,8 @@
 //! The camera: how the mouse and the keys move a view.
 //!
-//! The camera turns around a target that lies straight ahead of it. It keeps the horizon level: left
-//! and right turn around the scene's up axis, up and down stop before the camera looks along it.
+//! The camera turns around a target that lies straight ahead of it. It keeps the horizon level:
+//! left and right turn around the scene's up axis, up and down stop before the camera looks along
+//! it.
 
 use glam::{DQuat, DVec2, DVec3};
 use puncta::{Projection, View};

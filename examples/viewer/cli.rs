@@ -5,8 +5,8 @@ use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
 use puncta::gpu::{Fragment, Setup};
 use std::path::PathBuf;
 
-/// Options of `render` that write what a window does not, or that a window has other defaults for.
-const HIDDEN: [&str; 4] = ["depth", "ids", "json", "legend"];
+/// Options of `render` that write what a window does not.
+const HIDDEN: [&str; 3] = ["depth", "ids", "json"];
 
 #[derive(Debug, Parser)]
 #[command(name = "viewer")]

@@ -1,8 +1,8 @@
 //! Drawing: what happens on the drawing thread, and what it shares with the window.
 //!
-//! After each step [`present`] makes a [`Frame`] of it, and the window is told that there is one. Only
-//! the latest is kept. Making an image takes time in which nothing is drawn, so of a picture that is
-//! not settled only as many images are made as leave most of the time to drawing.
+//! After each step [`present`] makes a [`Frame`] of it, and the window is told that there is one.
+//! Only the latest is kept. Making an image takes time in which nothing is drawn, so of a picture
+//! that is not settled only as many images are made as leave most of the time to drawing.
 
 use crate::{cli::Order, look::Look, stage::Ordering};
 use egui::ColorImage;

@@ -1,5 +1,5 @@
-//! Shows a particle or point file, or a synthetic scene, in a window: exact pictures that follow the
-//! mouse.
+//! Shows a particle or point file, or a synthetic scene, in a window: exact pictures that follow
+//! the mouse.
 //!
 //! ```text
 //! cargo run --release --example viewer -- INPUT [options]
@@ -9,8 +9,8 @@
 //! Three threads share the work, and the window waits for none of the others:
 //!
 //! * The **window thread** turns input into views (`camera.rs`) and paints what it has.
-//! * The **drawing thread** of a [`puncta::Live`] draws the latest view, makes images of it and leaves
-//!   them where the window finds them (`drawing.rs`).
+//! * The **drawing thread** of a [`puncta::Live`] draws the latest view, makes images of it and
+//!   leaves them where the window finds them (`drawing.rs`).
 //! * The **worker** does what takes long and is not drawing: reading, sorting, waking up a GPU
 //!   (`worker.rs`).
 

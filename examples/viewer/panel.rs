@@ -36,8 +36,8 @@ const HELP: [(&str, &str); 11] = [
 impl App {
     /// The whole window.
     pub(crate) fn show(&mut self, ui: &mut Ui) {
-        // The places are reckoned here and not found by what is in them: each change of the picture's
-        // size is a picture to draw.
+        // The places are reckoned here and not found by what is in them: each change of the
+        // picture's size is a picture to draw.
         let whole = ui.max_rect();
         let (above, state) = whole.split_top_bottom_at_y(whole.bottom() - STATE_HEIGHT);
         let side = if self.has_panel { above.right() - PANEL_WIDTH } else { above.right() };

@@ -146,7 +146,8 @@ impl Pick {
     }
 }
 
-/// How many digits behind the point tell positions apart: they are offsets of 24 bits from an origin.
+/// How many digits behind the point tell positions apart: they are offsets of 24 bits from an
+/// origin.
 fn digits(scene: &Scene<Sphere>) -> usize {
     let sample = scene.records.first().map_or(1.0, |sphere| f64::from(sphere.radius));
     let exponent = (4.0 - sample.max(1e-30).log10().floor()).clamp(0.0, 12.0);

@@ -51,8 +51,8 @@ impl Script {
         Ok(false)
     }
 
-    /// Whether the window may close, now that an image was written. If it was not, the error will be
-    /// told with the next frame.
+    /// Whether the window may close, now that an image was written. If it was not, the error will
+    /// be told with the next frame.
     pub(crate) fn is_over(&self, saved: &Result<PathBuf>) -> bool {
         self.is_writing && saved.as_ref().is_ok_and(|path| Some(path) == self.screenshot.as_ref())
     }

@@ -84,7 +84,8 @@ struct Placed {
 }
 
 impl Placed {
-    /// The pixel of the image at a point of the window; the centre of a pixel has whole coordinates.
+    /// The pixel of the image at a point of the window; the centre of a pixel has whole
+    /// coordinates.
     fn pixel(self, at: Pos2) -> DVec2 {
         let offset = at - self.rect.min;
         DVec2::new(f64::from(offset.x), f64::from(offset.y)) * self.scale - 0.5

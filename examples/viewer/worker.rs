@@ -1,5 +1,5 @@
-//! The worker: what takes long and is not drawing. It reads, sorts, changes radii, wakes up GPUs and
-//! writes images, one after the other, and tells the window when something is done.
+//! The worker: what takes long and is not drawing. It reads, sorts, changes radii, wakes up GPUs
+//! and writes images, one after the other, and tells the window when something is done.
 
 use crate::{
     cli::Backend,
