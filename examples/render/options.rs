@@ -149,7 +149,7 @@ pub(crate) enum Columns {
 }
 
 /// What draws.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum BackendKind {
     /// All cores; needs nothing
     Cpu,

@@ -2,10 +2,11 @@
 
 use crate::{
     camera::Camera,
-    cli::{Backend, Cli, Order},
+    cli::{Cli, Order},
     drawing::{Desk, Frame, Shown, lock},
     graph::History,
     look::{self, Look},
+    options::BackendKind,
     options::ColorBy,
     picking::Pick,
     window::Message,
@@ -30,7 +31,7 @@ pub(crate) struct App {
     pub(crate) content: Option<Arc<Content>>,
     pub(crate) engine: Option<Engine>,
     /// What was asked for to draw with.
-    pub(crate) backend: Backend,
+    pub(crate) backend: BackendKind,
     pub(crate) camera: Option<Camera>,
     pub(crate) look: Look,
     pub(crate) order: Order,
@@ -72,7 +73,7 @@ impl App {
             jobs,
             content: None,
             engine: None,
-            backend: cli.backend,
+            backend: cli.render.backend,
             camera: None,
             look,
             order: cli.order,
@@ -120,7 +121,7 @@ impl App {
     }
 
     /// Draws with something else.
-    pub(crate) fn start(&mut self, backend: Backend) {
+    pub(crate) fn start(&mut self, backend: BackendKind) {
         let Some(content) = self.content.clone() else { return };
         self.backend = backend;
         let config = GpuConfig {
@@ -128,7 +129,7 @@ impl App {
             fragment: self.cli.fragment,
             ..GpuConfig::default()
         };
-        let wanted = Wanted { adapter: self.cli.adapter.clone(), config };
+        let wanted = Wanted { adapter: self.cli.render.adapter.clone(), config };
         let desk = Arc::new(Desk::new(self.look.clone(), self.order));
         self.send(Job::Start(content, desk, backend, wanted));
     }

@@ -1,7 +1,7 @@
 //! The command line: the options of the example `render`, and those of a window.
 
 use crate::options::{Columns, Options};
-use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
+use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum, error::ErrorKind};
 use puncta::gpu::{Fragment, Setup};
 use std::path::PathBuf;
 
@@ -14,21 +14,10 @@ pub(crate) struct Cli {
     #[command(flatten)]
     pub(crate) render: Options,
 
-    /// What draws
-    #[arg(long, value_enum, default_value_t = Backend::Gpu)]
-    pub(crate) backend: Backend,
-
-    /// A part of the name of the GPU to draw with; the best one by default
-    #[arg(long, value_name = "NAME")]
-    pub(crate) adapter: Option<String>,
-
-    /// How spheres become fragments: instanced, pulled, triangle, mesh or compute; by default what
-    /// suits the GPU
-    #[arg(long, value_name = "NAME")]
+    /// What is named in `render`.
+    #[arg(skip)]
     pub(crate) setup: Option<Setup>,
-
-    /// What fragments do: point, proxy, sphere or sphere-early; only the latter two are exact
-    #[arg(long, value_name = "NAME")]
+    #[arg(skip)]
     pub(crate) fragment: Option<Fragment>,
 
     /// Which bricks are drawn first
@@ -50,15 +39,6 @@ pub(crate) struct Cli {
     /// Print a line for each picture that is settled
     #[arg(long)]
     pub(crate) log: bool,
-}
-
-/// What draws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Backend {
-    /// The GPU, or the processor where there is none
-    Gpu,
-    /// The processor
-    Cpu,
 }
 
 /// Which bricks are drawn first.
@@ -96,11 +76,17 @@ pub(crate) fn parse() -> Result<Cli, clap::Error> {
         .mut_arg("size", |size| {
             size.default_value("1280x800").help("Columns and rows of the window")
         })
+        .mut_arg("backend", |backend| backend.default_value("gpu"))
         .mut_arg("out", |out| out.help("The image that the key P writes; numbered if it is there"));
     for name in HIDDEN {
         command = command.mut_arg(name, |option| option.hide(true));
     }
-    let mut cli = Cli::from_arg_matches(&command.get_matches())?;
+    let matches = command.clone().get_matches();
+    let mut cli = Cli::from_arg_matches(&matches)?;
+    let invalid = |what: String| command.error(ErrorKind::ValueValidation, what);
+    cli.setup = cli.render.setup.as_deref().map(str::parse).transpose().map_err(invalid)?;
+    let invalid = |what: String| command.error(ErrorKind::ValueValidation, what);
+    cli.fragment = cli.render.fragment.as_deref().map(str::parse).transpose().map_err(invalid)?;
     cli.render.columns = Columns::All;
     Ok(cli)
 }

@@ -1,11 +1,7 @@
 //! What stands around the picture: choices and numbers beside it, the state of things below.
 
 use crate::{
-    app::App,
-    cli::{Backend, Order},
-    look,
-    options::ColorBy,
-    progress, theme, viewport,
+    app::App, cli::Order, look, options::BackendKind, options::ColorBy, progress, theme, viewport,
 };
 use egui::{
     Align, ComboBox, Grid, Layout, Margin, ProgressBar, Rect, RichText, ScrollArea, Slider,
@@ -165,8 +161,8 @@ impl App {
     fn show_draw(&mut self, ui: &mut Ui) {
         let mut backend = self.backend;
         row(ui, "with", |ui| {
-            ui.selectable_value(&mut backend, Backend::Gpu, "GPU");
-            ui.selectable_value(&mut backend, Backend::Cpu, "CPU");
+            ui.selectable_value(&mut backend, BackendKind::Gpu, "GPU");
+            ui.selectable_value(&mut backend, BackendKind::Cpu, "CPU");
         });
         if backend != self.backend {
             self.start(backend);
@@ -299,12 +295,12 @@ impl App {
                 ui.add_space(6.0);
                 ui.horizontal(|ui| {
                     is_read = ui.button("Close").clicked();
-                    if self.backend == Backend::Gpu
+                    if self.backend == BackendKind::Gpu
                         && self.engine.is_some()
                         && ui.button("Draw on the CPU").clicked()
                     {
                         is_read = true;
-                        self.start(Backend::Cpu);
+                        self.start(BackendKind::Cpu);
                     }
                 });
             });

@@ -2,10 +2,10 @@
 //! and writes images, one after the other, and tells the window when something is done.
 
 use crate::{
-    cli::Backend,
     drawing::{self, Desk},
     input::{self, Input},
     look::{Palette, middle},
+    options::BackendKind,
     options::Options,
     progress::Bar,
     view,
@@ -60,7 +60,7 @@ impl Content {
 pub(crate) struct Engine {
     pub(crate) live: Live<Sphere, Grid>,
     pub(crate) desk: Arc<Desk>,
-    pub(crate) backend: Backend,
+    pub(crate) backend: BackendKind,
     /// What it draws with.
     pub(crate) name: String,
     /// Why it is not what was asked for.
@@ -82,7 +82,7 @@ pub(crate) enum Job {
     /// Give the records of a scene other radii.
     Scale(Arc<Content>, f32),
     /// Start a thread that draws.
-    Start(Arc<Content>, Arc<Desk>, Backend, Wanted),
+    Start(Arc<Content>, Arc<Desk>, BackendKind, Wanted),
     /// Write an image.
     Save(PathBuf, Image),
 }
@@ -181,7 +181,7 @@ fn scale(content: &Content, factor: f32) -> Result<Content> {
 fn start(
     content: &Content,
     desk: Arc<Desk>,
-    (backend, wanted): (Backend, &Wanted),
+    (backend, wanted): (BackendKind, &Wanted),
     proxy: &EventLoopProxy<Message>,
 ) -> Result<Engine> {
     let _bar = Bar::spinner("starting");
@@ -192,8 +192,8 @@ fn start(
         proxy.send_event(Message::Drawn).ok();
     };
     let gpu = match backend {
-        Backend::Cpu => Err(None),
-        Backend::Gpu => Gpu::new(wanted.adapter.as_deref(), Extent::Full)
+        BackendKind::Cpu => Err(None),
+        BackendKind::Gpu => Gpu::new(wanted.adapter.as_deref(), Extent::Full)
             .and_then(|gpu| Ok((GpuRenderer::new(&gpu, wanted.config.clone())?, gpu)))
             .map_err(|error| Some(format!("drawing on the CPU: {error}"))),
     };
@@ -202,7 +202,7 @@ fn start(
         Ok((renderer, gpu)) => Ok(Engine {
             live: drawing::spawn(renderer, what, Arc::clone(&desk), wake).context(no_thread)?,
             desk,
-            backend: Backend::Gpu,
+            backend: BackendKind::Gpu,
             name: gpu.name().to_owned(),
             notice: None,
         }),
@@ -210,7 +210,7 @@ fn start(
             live: drawing::spawn(CpuRenderer::default(), what, Arc::clone(&desk), wake)
                 .context(no_thread)?,
             desk,
-            backend: Backend::Cpu,
+            backend: BackendKind::Cpu,
             name: format!("CPU, {} threads", rayon::current_num_threads()),
             notice,
         }),
