@@ -9,25 +9,17 @@
 )]
 
 use glam::{DVec3, Vec3};
-use naive::Verdict;
+use naive::{CPU, Verdict};
 use proptest::prelude::*;
 use puncta::{
     CpuRenderer, Depth, FrustumCull, Grid, GridConfig, Picture, Pipeline, Scene, Sphere, View,
 };
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
+use scenes::{cloud, odd_view, scenes};
 
 mod naive;
-
-/// Uniform in a cube, with radii that are uniform in their logarithm.
-fn cloud(random: &mut Pcg64Mcg, count: usize, half: f32, radii: [f32; 2]) -> Vec<Sphere> {
-    let mut sphere = || {
-        let center = [0; 3].map(|_| half * (random.random::<f32>() * 2.0 - 1.0));
-        let share = random.random::<f32>();
-        Sphere { center, radius: radii[0] * (radii[1] / radii[0]).powf(share) }
-    };
-    (0..count).map(|_| sphere()).collect()
-}
+mod scenes;
 
 fn render(scene: &mut Scene, view: &View, cells: u32) -> Picture {
     let grid = Grid::sort_scene(scene, &GridConfig::longest_side(cells)).unwrap();
@@ -38,66 +30,9 @@ fn render(scene: &mut Scene, view: &View, cells: u32) -> Picture {
 fn check(name: &str, mut scene: Scene, view: &View) -> Verdict {
     let picture = render(&mut scene, view, 8);
     let verdict =
-        naive::compare(&scene, view, &picture).unwrap_or_else(|what| panic!("{name}: {what}"));
+        naive::compare(&scene, view, &picture, CPU).unwrap_or_else(|what| panic!("{name}: {what}"));
     println!("{name:<36} covered {:>6} undecided {:>4}", verdict.covered, verdict.undecided);
     verdict
-}
-
-/// A view from a random place at this distance, with a random roll.
-fn view(random: &mut Pcg64Mcg, distance: f64, target: DVec3) -> View {
-    let mut axis = || DVec3::from([0; 3].map(|_| random.random::<f64>() - 0.5)).normalize();
-    let eye = target + axis() * distance;
-    View::look_at(eye, target, axis()).unwrap().with_size(160, 120).unwrap()
-}
-
-/// The scenes of the promise: their names, records and views.
-fn scenes() -> Vec<(String, Scene, View)> {
-    let mut random = Pcg64Mcg::seed_from_u64(20);
-    let mut scenes = Vec::new();
-    let mut add = |name: String, scene, view| scenes.push((name, scene, view));
-    let fine = [1e-3, 0.05];
-    let four_decades = [3e-5, 0.3];
-    for round in 0..4 {
-        let scene = Scene::new(cloud(&mut random, 1500, 1.0, four_decades));
-        let outside = view(&mut random, 3.0, DVec3::ZERO);
-        add(format!("four decades of radii {round}"), scene, outside);
-
-        let scene = Scene::new(cloud(&mut random, 1500, 1.0, fine));
-        let height = 0.2 + random.random::<f64>() * 2.0;
-        let parallel = view(&mut random, 3.0, DVec3::ZERO).with_orthographic(height).unwrap();
-        add(format!("orthographic {round}"), scene, parallel);
-
-        let scene = Scene::new(cloud(&mut random, 1500, 1.0, four_decades));
-        let inside = view(&mut random, 0.6, DVec3::ZERO);
-        add(format!("camera inside the cloud {round}"), scene, inside);
-
-        let scene = Scene::new(cloud(&mut random, 1500, 1.0, [0.01, 0.3]));
-        let cut = view(&mut random, 1.0, DVec3::ZERO).with_near(0.3).unwrap();
-        let cut = if round % 2 == 0 { cut } else { cut.with_orthographic(1.5).unwrap() };
-        add(format!("near plane cuts spheres {round}"), scene, cut);
-    }
-    let scene = Scene::new(cloud(&mut random, 1500, 1.0, fine));
-    let narrow = view(&mut random, 1000.0, DVec3::ZERO);
-    add(
-        "0.1 degrees from 1000 units".into(),
-        scene,
-        narrow.with_perspective(0.1_f64.to_radians()).unwrap(),
-    );
-
-    let scene = Scene::new(cloud(&mut random, 1500, 1.0, fine));
-    let wide = view(&mut random, 0.9, DVec3::ZERO);
-    add("95 degrees".into(), scene, wide.with_perspective(95_f64.to_radians()).unwrap());
-
-    let mut scene = Scene::new(cloud(&mut random, 1500, 1.0, fine));
-    scene.origin = DVec3::new(1e7, -1e7, 1e7);
-    let far = view(&mut random, 3.0, scene.origin);
-    add("moved by 1e7".into(), scene, far);
-
-    // Large discs at a middling distance: where f32 has the least to spare.
-    let scene = Scene::new(cloud(&mut random, 60, 1.0, [0.05, 0.2]));
-    let large = view(&mut random, 6.0, DVec3::ZERO);
-    add("large discs".into(), scene, large.with_perspective(20_f64.to_radians()).unwrap());
-    scenes
 }
 
 #[test]
@@ -123,25 +58,6 @@ fn pictures_agree_with_the_reference() {
     assert!(share < 5e-4);
 }
 
-/// A camera at any distance from a sphere of any size, at any angle, in pictures of any shape.
-fn odd_view() -> impl Strategy<Value = View> {
-    let sizes = prop_oneof![Just((1, 1)), Just((40, 1)), Just((1, 40)), Just((24, 18))];
-    let place = [-2.0_f64..2.0, -2.0..2.0, -2.0..2.0].prop_map(DVec3::from);
-    let look = (place.clone(), place, -2.0_f64..2.254, any::<bool>());
-    (sizes, look, -7.0_f64..1.0).prop_filter_map(
-        "a degenerate view",
-        |((width, height), (eye, target, angle, is_perspective), near)| {
-            let view = View::look_at(eye, target, DVec3::Z).ok()?.with_size(width, height).ok()?;
-            let view = view.with_near(10_f64.powf(near)).ok()?;
-            if is_perspective {
-                view.with_perspective(10_f64.powf(angle).to_radians()).ok()
-            } else {
-                view.with_orthographic(10_f64.powf(angle - 1.0)).ok()
-            }
-        },
-    )
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1500))]
 
@@ -156,7 +72,7 @@ proptest! {
         let spheres = cloud(&mut random, 40, 2.0, [1e-4, 10_f32.powf(largest)]);
         let mut scene = Scene::new(spheres);
         let picture = render(&mut scene, &view, cells);
-        let verdict = naive::compare(&scene, &view, &picture);
+        let verdict = naive::compare(&scene, &view, &picture, CPU);
         prop_assert!(verdict.is_ok(), "{:?} {:?}", verdict, view);
     }
 }
@@ -176,7 +92,7 @@ fn a_sphere_that_nearly_touches_the_eye_is_drawn_whole() {
             let aside = 1.0 + reach * (step as f32 / 30.0 - 1.0);
             let mut scene = Scene::new(vec![Sphere::new([aside, 0.0, 0.0], 1.0)]);
             let picture = render(&mut scene, &view, 1);
-            let verdict = naive::compare(&scene, &view, &picture);
+            let verdict = naive::compare(&scene, &view, &picture, CPU);
             assert!(verdict.is_ok(), "{altitude} {degrees} {step}: {verdict:?}");
             covered += picture.covered_pixels();
         }
@@ -257,7 +173,7 @@ fn records_without_a_picture_do_no_harm() {
     let view = View::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y).unwrap();
     let view = view.with_size(64, 64).unwrap();
     let picture = render(&mut scene, &view, 2);
-    naive::compare(&scene, &view, &picture).unwrap();
+    naive::compare(&scene, &view, &picture, CPU).unwrap();
     assert!(picture.original_ids(&scene).contains(&5));
     // A depth that f32 cannot hold is not seen, and does not tie with what is not there.
     scene.origin = DVec3::new(0.0, 0.0, -1e39);

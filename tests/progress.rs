@@ -6,129 +6,21 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use puncta::{
-    Amount, Brick, Budget, Content, CpuRenderer, Density, DensityFifo, Depth, Frame, FrustumCull,
-    Grid, GridConfig, Level, NO_RECORD, Picture, Pipeline, Progress, Record, Renderer, Scene,
-    Sphere, Stage, Transmittance, View, Visible,
+    Amount, Brick, Budget, Content, CpuRenderer, Depth, Frame, FrustumCull, Grid, GridConfig,
+    NO_RECORD, Picture, Pipeline, Progress, Record, Renderer, Scene, Sphere, View, Visible,
     core::{Aabb, VisibleBrick},
 };
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64Mcg;
 use std::time::Duration;
+use steps::{Any, Opens, bits, check_steps, front, moved, orders, scene, view, wall};
 
-/// Orders that have nothing in common.
-#[derive(Clone, Copy, Debug)]
-enum Any {
-    Nearest,
-    Farthest,
-    Shuffled,
-    MostOpen,
-}
+mod steps;
 
-impl<G: ?Sized> Stage<G> for Any {
-    fn apply(&mut self, frame: &Frame<'_, G>, visible: &mut Visible) {
-        Depth::default().apply(frame, visible);
-        match self {
-            Self::Nearest | Self::MostOpen => {}
-            Self::Farthest => visible.bricks.reverse(),
-            Self::Shuffled => {
-                visible.bricks.sort_by_key(|brick| brick.index().wrapping_mul(0x9e37_79b1));
-            }
-        }
-    }
-
-    fn refine(&mut self, _frame: &Frame<'_, G>, visible: &mut Visible) {
-        if let Self::MostOpen = self {
-            let most = |brick: &VisibleBrick| (!brick.gain().to_bits(), brick.index());
-            visible.bricks.sort_by_key(most);
-        }
-    }
-}
-
-/// Those, and those that there are.
-#[derive(Clone, Copy, Debug)]
-enum Order {
-    Any(Any),
-    Level,
-    Density,
-    DensityFifo,
-    Transmittance,
-}
-
-impl Order {
-    fn stage(self) -> Box<dyn Stage<Grid>> {
-        match self {
-            Self::Any(any) => Box::new(any),
-            Self::Level => Box::new(Level::default()),
-            Self::Density => Box::new(Density::default()),
-            Self::DensityFifo => Box::new(DensityFifo::default()),
-            Self::Transmittance => Box::new(Transmittance::default()),
-        }
-    }
-}
-
-fn orders() -> impl Strategy<Value = Order> {
-    prop_oneof![
-        Just(Order::Any(Any::Nearest)),
-        Just(Order::Any(Any::Farthest)),
-        Just(Order::Any(Any::Shuffled)),
-        Just(Order::Any(Any::MostOpen)),
-        Just(Order::Level),
-        Just(Order::Density),
-        Just(Order::DensityFifo),
-        Just(Order::Transmittance),
-    ]
-}
-
-/// Spheres in a cube, in a few clusters or on sheets, with radii over two decades; some coincide.
-fn scene(seed: u64) -> Scene {
-    let mut random = Pcg64Mcg::seed_from_u64(seed);
-    let count = [0, 1, 30, 300, 3000][random.random_range(0..5)];
-    let kind = random.random_range(0..3);
-    let largest = [0.02_f32, 0.1, 0.5][random.random_range(0..3)];
-    let mut sphere = || {
-        let mut axis = || random.random::<f32>() * 2.0 - 1.0;
-        let mut center = [axis(), axis(), axis()];
-        match kind {
-            1 => center = center.map(|x| (x * 2.0).round() * 0.5 + x * 0.1),
-            2 => center[2] = (center[2] * 3.0).round() / 3.0,
-            _ => {}
-        }
-        Sphere { center, radius: largest * 0.01_f32.powf(random.random::<f32>()) }
-    };
-    let mut records: Vec<Sphere> = (0..count).map(|_| sphere()).collect();
-    for i in 0..count / 10 {
-        records[i] = records[count - 1 - i];
-    }
-    let mut scene = Scene::new(records);
-    scene.origin = if seed.is_multiple_of(4) { DVec3::splat(1e7) } else { DVec3::ZERO };
-    scene
-}
-
-fn view() -> impl Strategy<Value = View> {
-    let eyes = [-3.0_f64..3.0, -3.0_f64..3.0, -3.0_f64..3.0];
-    let sizes = (1_u32..90, 1_u32..90);
-    (eyes, sizes, 0.05_f64..2.0, any::<bool>(), prop_oneof![Just(1e-6), Just(0.3)]).prop_map(
-        |(eye, (width, height), opening, is_perspective, near)| {
-            let view = View::look_at(DVec3::from(eye), DVec3::splat(0.017), DVec3::Z).unwrap();
-            let view = view.with_size(width, height).unwrap().with_near(near).unwrap();
-            if is_perspective {
-                view.with_perspective(opening).unwrap()
-            } else {
-                view.with_orthographic(opening * 2.0).unwrap()
-            }
-        },
-    )
-}
-
-/// The same view, moved with a scene.
-fn moved(view: &View, origin: DVec3) -> View {
-    let eye = origin + view.eye();
-    let moved = View::look_at(eye, eye + view.forward(), view.up()).unwrap();
-    let moved = moved.with_size(view.width(), view.height()).unwrap();
-    let moved = moved.with_near(view.near()).unwrap();
-    match view.projection() {
-        puncta::Projection::Perspective { fov_y } => moved.with_perspective(fov_y).unwrap(),
-        puncta::Projection::Orthographic { height } => moved.with_orthographic(height).unwrap(),
+impl Opens for CpuRenderer {
+    fn open(&mut self, view: &View) -> Vec<bool> {
+        let rows = 0..view.height();
+        rows.flat_map(|row| (0..view.width()).map(move |column| (column, row)))
+            .map(|(column, row)| self.is_open(column, row))
+            .collect()
     }
 }
 
@@ -146,25 +38,6 @@ fn complete(scene: &Scene, view: &View) -> Picture {
     }
     let mut pipeline = Pipeline::new((), CpuRenderer::default());
     pipeline.render(scene, &vec![brick], view).unwrap()
-}
-
-fn bits(picture: &Picture) -> Vec<(u32, u32)> {
-    picture.depth.iter().map(|depth| depth.to_bits()).zip(picture.id.iter().copied()).collect()
-}
-
-/// Which pixels the renderer says are open.
-fn open(renderer: &CpuRenderer, view: &View) -> Vec<bool> {
-    let rows = 0..view.height();
-    rows.flat_map(|row| (0..view.width()).map(move |column| renderer.is_open(column, row)))
-        .collect()
-}
-
-fn sum(progress: &Progress) -> Amount {
-    let mut sum = progress.drawn;
-    sum += progress.skipped;
-    sum += progress.left;
-    sum += progress.culled;
-    sum
 }
 
 proptest! {
@@ -190,32 +63,7 @@ proptest! {
         if has_cache {
             pipeline.render(&scene, &grid, &moved(&before, scene.origin)).unwrap();
         }
-        let mut steps = pipeline.progressive(&scene, &grid, &view, budget).unwrap();
-        let all = Amount {
-            bricks: grid.bricks().len() as u64,
-            records: scene.records.len() as u64,
-        };
-        prop_assert_eq!(sum(&steps.progress()), all);
-        let mut count = 0;
-        while let Some(progress) = steps.next() {
-            let progress = progress.unwrap();
-            let now = bits(&steps.picture().unwrap());
-            let open = open(steps.renderer(), &view);
-            prop_assert_eq!(sum(&progress), all);
-            prop_assert_eq!(progress.settled(), progress.left.bricks == 0);
-            if progress.left.bricks > 0 {
-                let pixels = open.iter().filter(|&&is_open| is_open).count() as u64;
-                prop_assert_eq!(progress.open, pixels);
-            }
-            for (pixel, is_open) in open.into_iter().enumerate() {
-                let is_open = is_open && !progress.settled();
-                prop_assert!(is_open || now[pixel] == expected[pixel], "pixel {}", pixel);
-            }
-            count += 1;
-            prop_assert!(count <= all.bricks + 1, "each step draws a brick or what was seen");
-        }
-        prop_assert!(steps.progress().settled());
-        prop_assert_eq!(&bits(&steps.picture().unwrap()), &expected);
+        check_steps(&mut pipeline, (&scene, &grid), (&view, budget), &expected)?;
     }
 
     /// The first step draws what was seen before, each record once, and nothing else.
@@ -253,22 +101,6 @@ proptest! {
             prop_assert!(now == expected || is_tie, "pixel {}", at);
         }
     }
-}
-
-/// A deep stack of sheets: nearly everything is hidden, and must be found to be.
-fn wall() -> (Scene, Grid) {
-    let sphere = |i: u32| {
-        let at = |shift: u32| (i >> shift & 31) as f32;
-        Sphere::new([at(0), at(5), at(10)], 0.8)
-    };
-    let mut scene = Scene::new((0..32_768).map(sphere).collect::<Vec<_>>());
-    let grid = Grid::sort_scene(&mut scene, &GridConfig::longest_side(16)).unwrap();
-    (scene, grid)
-}
-
-fn front(scene: &Scene) -> View {
-    let view = View::look_at(DVec3::new(60.0, 45.0, 80.0), DVec3::splat(15.5), DVec3::Y).unwrap();
-    view.with_size(160, 120).unwrap().fitted(&scene.bounds())
 }
 
 #[test]

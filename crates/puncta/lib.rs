@@ -2,6 +2,7 @@
 
 pub use puncta_core as core;
 pub use puncta_cpu as cpu;
+#[cfg(feature = "gpu")]
 pub use puncta_gpu as gpu;
 pub use puncta_grid as grid;
 pub use puncta_io as io;
@@ -13,7 +14,8 @@ pub use puncta_core::{
     Visible,
 };
 pub use puncta_cpu::{Background, ColorMap, Coloring, Colors, CpuRenderer, Shading, shade};
-pub use puncta_gpu::{Gpu, GpuConfig, GpuRenderer, Paint, ShadeConfig};
+#[cfg(feature = "gpu")]
+pub use puncta_gpu::{Compositor, Gpu, GpuConfig, GpuRenderer, Paint, ShadeConfig};
 #[cfg(all(target_endian = "little", any(unix, windows)))]
 pub use puncta_grid::{BrickFile, ConvertConfig, convert};
 pub use puncta_grid::{Cells, Error as GridError, Fit, Grid, GridConfig, Order, Resolution};

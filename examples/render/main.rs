@@ -44,7 +44,7 @@ fn run(options: &Options) -> Result<()> {
     let view = statistics.time("view", || view::choose(options, &input))?;
     let look = output::Look::new(options, &input, &view)?;
     let backend = Backend::new(options)?;
-    statistics.backend = backend.name();
+    statistics.backend.clone_from(&backend.name);
     let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), backend);
     let grid = statistics.time("sort", || sort(options, &mut input))?;
     let picture = draw(&mut pipeline, (&input.scene, &grid), &view, ("frame", &mut statistics))?;

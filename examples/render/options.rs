@@ -2,15 +2,11 @@
 
 use clap::{Parser, ValueEnum};
 use glam::DVec3;
-use puncta::{
-    Background, ColorMap,
-    gpu::{Fragment, Setup},
-    io::synthetic::Generator,
-};
+use puncta::{Background, ColorMap, io::synthetic::Generator};
 use std::{num::NonZero, path::PathBuf};
 
 /// Draws a particle or point file, or a synthetic scene, exactly, on the CPU or a GPU.
-#[derive(Debug, Parser)]
+#[derive(Clone, Debug, Parser)]
 #[command(name = "render", version, after_help = after_help())]
 pub(crate) struct Options {
     /// A file (XYZ, extended XYZ, LAMMPS dump, PDB, MMPLD, PLY, LAS, LAZ, legacy VTK; gzip is fine),
@@ -110,11 +106,11 @@ pub(crate) struct Options {
     /// How spheres become fragments: instanced, pulled, triangle, mesh or compute; by default what
     /// suits the GPU
     #[arg(long, value_name = "SETUP")]
-    pub(crate) setup: Option<Setup>,
+    pub(crate) setup: Option<String>,
 
     /// What fragments do: sphere or sphere-early; point and proxy are not exact
     #[arg(long, value_name = "FRAGMENT")]
-    pub(crate) fragment: Option<Fragment>,
+    pub(crate) fragment: Option<String>,
 
     /// Threads to draw with, at most 1024; all cores by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -135,10 +131,25 @@ pub(crate) struct Options {
     /// Write counts, bytes and seconds
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
+
+    /// Which scalars to read besides the one to color by: not for the command line.
+    #[arg(skip)]
+    pub(crate) columns: Columns,
+}
+
+/// Which scalars to read of a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Columns {
+    /// That to color by.
+    #[default]
+    Needed,
+    /// All, to choose among them later.
+    #[allow(dead_code, reason = "only the example `viewer` asks for it")]
+    All,
 }
 
 /// What draws.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum BackendKind {
     /// All cores; needs nothing
     Cpu,

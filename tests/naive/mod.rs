@@ -2,13 +2,16 @@
 //!
 //! It shares no code with the renderers. For each pixel it tells the set of answers that may be
 //! given: one, unless the answer hangs on a hair. That is what the promise of exactness says: a
-//! silhouette within `SILHOUETTE_PIXELS` of the ray, or two depths within `DEPTH_ULPS`.
+//! silhouette within some [`Pixels`] of the ray, or two depths within `DEPTH_ULPS`.
 
 use glam::DVec3;
 use puncta::core::{NO_RECORD, Picture, Projection, Record, Scene, View};
 
-/// How far a silhouette may be off, in pixels.
-const SILHOUETTE_PIXELS: f64 = 1e-4;
+/// How far a silhouette may be off, in pixels: what a renderer promises.
+pub(crate) type Pixels = f64;
+
+/// What the renderer on the CPU promises.
+pub(crate) const CPU: Pixels = 1e-4;
 
 /// Up to how many units in the last place of `f32` two depths count as equal.
 const DEPTH_ULPS: f64 = 4.0;
@@ -47,13 +50,14 @@ pub(crate) fn compare<R: Record>(
     scene: &Scene<R>,
     view: &View,
     picture: &Picture,
+    hair: Pixels,
 ) -> Result<Verdict, String> {
     let mut verdict = Verdict::default();
     for row in 0..view.height() {
         for column in 0..view.width() {
             let index = (row * view.width() + column) as usize;
             let (id, depth) = (picture.id[index], picture.depth[index]);
-            let pixel = reference(scene, view, column, row);
+            let pixel = reference(scene, view, (column, row), hair);
             check(&pixel, id, depth)
                 .map_err(|what| format!("column {column}, row {row}: {what}; {pixel:?}"))?;
             verdict.pixels += 1;
@@ -89,14 +93,14 @@ fn check(pixel: &Pixel, id: u32, depth: f32) -> Result<(), String> {
 }
 
 /// What a pixel may show, by looking at every record.
-fn reference<R: Record>(scene: &Scene<R>, view: &View, column: u32, row: u32) -> Pixel {
+fn reference<R: Record>(scene: &Scene<R>, view: &View, pixel: (u32, u32), hair: Pixels) -> Pixel {
     let to_origin = scene.origin - view.eye();
     let mut candidates: Vec<Candidate> = Vec::new();
     for (index, record) in scene.records.iter().enumerate() {
         let center = to_origin + record.position().as_dvec3();
         let radius = f64::from(record.radius());
         candidates.extend(
-            candidate(view, (column, row), center, radius).map(|(depth, is_sure)| Candidate {
+            candidate(view, pixel, (center, radius), hair).map(|(depth, is_sure)| Candidate {
                 id: index as u32,
                 radius,
                 depth,
@@ -124,19 +128,19 @@ fn reference<R: Record>(scene: &Scene<R>, view: &View, column: u32, row: u32) ->
 fn candidate(
     view: &View,
     (column, row): (u32, u32),
-    center: DVec3,
-    radius: f64,
+    (center, radius): (DVec3, f64),
+    pixels: Pixels,
 ) -> Option<(f64, bool)> {
     let ray = |dx: f64, dy: f64| view.ray(f64::from(column) + dx, f64::from(row) + dy);
     let at = |(dx, dy): (f64, f64)| enter(view, ray(dx, dy).into(), center, radius);
     // Moving a ray by some pixels moves it at the centre by at most so much, in world units.
     let spread = if view.is_perspective() { center.length() } else { 1.0 };
-    let hair = SILHOUETTE_PIXELS * view.pixel_size() * spread;
+    let hair = pixels * view.pixel_size() * spread;
     let miss = miss(view, ray(0.0, 0.0).into(), center);
     if miss > radius + hair {
         return None;
     }
-    let (middle, step) = (at((0.0, 0.0)), SILHOUETTE_PIXELS);
+    let (middle, step) = (at((0.0, 0.0)), pixels);
     let diagonal = step * std::f64::consts::FRAC_1_SQRT_2;
     let straight = [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)];
     let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];

@@ -15,3 +15,16 @@ fn claim(
         visibility[place].x = 0u;
     }
 }
+
+// Pixels whose ids are right keep them: after what was drawn with its ids in one go.
+@compute @workgroup_size(64)
+fn accept(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let place = number(group, groups, lane);
+    if place < camera.width * camera.height {
+        known[place] = visibility[place].y;
+    }
+}

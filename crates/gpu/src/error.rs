@@ -61,6 +61,18 @@ pub enum Error {
         /// The name of the adapter.
         adapter: String,
     },
+    /// A picture with more columns or rows than the device has pixels in a line.
+    #[error("a picture of {width} x {height} pixels; {adapter} takes {limit} along a side")]
+    PictureTooWide {
+        /// The number of columns.
+        width: u32,
+        /// The number of rows.
+        height: u32,
+        /// The most of either that the device takes.
+        limit: u32,
+        /// The name of the adapter.
+        adapter: String,
+    },
     /// More bricks than one table can hold.
     #[error("{bricks} bricks in play need {bytes} bytes in one piece; the GPU takes {limit}")]
     TooManyBricks {

@@ -7,7 +7,7 @@ adapter has beyond WebGPU is used where it is there. Of a user's own device, nei
 errors nor the callback for its loss is touched.
 */
 
-use crate::Error;
+use crate::{Error, kernel::shader};
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{ErrorFilter, Features, Limits};
 
@@ -23,6 +23,7 @@ pub struct Gpu {
 /// What drawing makes use of where it is there.
 const WANTED: Features = Features::SHADER_INT64
     .union(Features::SHADER_INT64_ATOMIC_MIN_MAX)
+    .union(Features::SHADER_INT64_ATOMIC_ALL_OPS)
     .union(Features::SHADER_EARLY_DEPTH_TEST)
     .union(Features::TIMESTAMP_QUERY)
     .union(Features::PIPELINE_STATISTICS_QUERY)
@@ -145,6 +146,17 @@ impl Gpu {
         self.has(Features::SHADER_INT64 | Features::SHADER_INT64_ATOMIC_MIN_MAX)
     }
 
+    /// How pixels are written.
+    pub(crate) fn visibility(&self) -> &'static str {
+        if !self.is_wide() {
+            shader!("visibility_narrow")
+        } else if self.has(Features::SHADER_INT64_ATOMIC_ALL_OPS) {
+            shader!("visibility_load")
+        } else {
+            shader!("visibility_wide")
+        }
+    }
+
     /// The most bytes that a shader sees in one piece.
     pub(crate) fn binding_bytes_max(&self) -> u64 {
         let limits = self.device.limits();
@@ -166,9 +178,24 @@ impl Gpu {
             return Err(Error::OutOfMemory { what: what.to_owned() });
         }
         match refused {
+            Some(error) if self.is_gone() => Err(Error::Lost { reason: error.to_string() }),
             Some(error) => Err(Error::Refused { what: error.to_string() }),
             None => Ok(result),
         }
+    }
+
+    /// Whether the device can do nothing any more, found by trying: of a user's own device it is not
+    /// told. What is made on a lost device is no error, but it cannot be used.
+    fn is_gone(&self) -> bool {
+        let validation = self.device.push_error_scope(ErrorFilter::Validation);
+        let probe = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("Gpu::probe"),
+            size: 16,
+            usage: wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        probe.map_async(wgpu::MapMode::Read, .., |_| {});
+        pollster::block_on(validation.pop()).is_some()
     }
 
     /// Whether the device is still there.

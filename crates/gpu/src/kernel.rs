@@ -208,7 +208,7 @@ impl Pool {
     ) -> Result<wgpu::Buffer, Error> {
         let bytes: &[u8] = bytemuck::cast_slice(values);
         let buffer = self.storage(gpu, label, bytes.len() as u64)?;
-        gpu.queue.write_buffer(&buffer, 0, bytes);
+        gpu.guard(label, || gpu.queue.write_buffer(&buffer, 0, bytes))?;
         Ok(buffer)
     }
 }
@@ -239,9 +239,11 @@ pub(crate) fn read(
     }
     gpu.guard("reading back", || work.submit())?;
     let (sender, receiver) = std::sync::mpsc::channel();
-    staging.map_async(wgpu::MapMode::Read, 0..bytes, move |result| {
-        sender.send(result).ok();
-    });
+    gpu.guard("reading back", || {
+        staging.map_async(wgpu::MapMode::Read, 0..bytes, move |result| {
+            sender.send(result).ok();
+        });
+    })?;
     gpu.wait()?;
     let lost = |what: String| Error::Lost { reason: what };
     match receiver.recv() {

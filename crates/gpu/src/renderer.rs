@@ -30,6 +30,15 @@ const LATER_SHARE: usize = 64;
 
 /// Draws spheres exactly, through wgpu.
 ///
+/// At each pixel the picture shows what [`Camera`] defines: the nearest point where its ray enters a
+/// sphere, at a view depth of at least [`View::near`]; of equal depths the one with the lower
+/// [`puncta_core::Scene::id`]. It does not depend on the order of drawing, on [`Setup`], or on what
+/// was left out because it is hidden.
+///
+/// A picture is of one content: drawing another one into it is [`Error::OtherContent`].
+///
+/// # Examples
+///
 /// See the [crate's page](crate).
 #[derive(Debug)]
 pub struct GpuRenderer {
@@ -72,7 +81,7 @@ pub(crate) struct Frame {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     origin: glam::DVec3,
-    records: (u64, usize),
+    records: (u64, u64, usize),
     bricks: (usize, usize),
 }
 
@@ -80,7 +89,7 @@ impl Key {
     fn of<R: Record>(content: &Content<'_, R>) -> Self {
         Self {
             origin: content.scene.origin,
-            records: (content.scene.records.version(), content.scene.records.len()),
+            records: crate::store::key(content.scene),
             bricks: (content.bricks.as_ptr() as usize, content.bricks.len()),
         }
     }

@@ -289,6 +289,15 @@ impl Stage<'_> {
             ];
             let items = rectangle.size[0] * rectangle.size[1];
             self.kernels.merge.run(&mut work, &bindings, items);
+            // Else its ids would be forgotten when something is drawn over it.
+            if let Some(known) = &target.known {
+                let bindings = [
+                    (0, target.camera.as_entire_binding()),
+                    (9, target.visibility.as_entire_binding()),
+                    (10, known.as_entire_binding()),
+                ];
+                self.kernels.accept.run(&mut work, &bindings, target.pixels());
+            }
             work.submit();
         })?;
         self.frame.are_tiles_fresh = false;

@@ -231,7 +231,7 @@ impl Store {
                 under_way -= 1;
                 result?;
                 self.copy(gpu, &staging, batch)?;
-                ring.give_back(staging);
+                ring.give_back(gpu, staging)?;
             }
         })
     }
@@ -277,7 +277,7 @@ impl Ring {
             let bytes = STAGED as u64 * (SPHERE_BYTES + ID_BYTES);
             let usage = wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC;
             let made = buffer(gpu, "Ring::staging", (bytes, usage))?;
-            made.map_async(wgpu::MapMode::Write, .., |_| {});
+            gpu.guard("staging", || made.map_async(wgpu::MapMode::Write, .., |_| {}))?;
             gpu.wait()?;
             return Ok(Some(made));
         }
@@ -287,14 +287,16 @@ impl Ring {
     }
 
     /// Takes a buffer back that is being copied from: it can be filled once that is done.
-    fn give_back(&self, staging: wgpu::Buffer) {
+    fn give_back(&self, gpu: &Gpu, staging: wgpu::Buffer) -> Result<(), Error> {
         let back = self.back.0.clone();
         let handle = staging.clone();
-        staging.map_async(wgpu::MapMode::Write, .., move |result| {
-            if result.is_ok() {
-                back.send(handle).ok();
-            }
-        });
+        gpu.guard("staging", || {
+            staging.map_async(wgpu::MapMode::Write, .., move |result| {
+                if result.is_ok() {
+                    back.send(handle).ok();
+                }
+            });
+        })
     }
 }
 

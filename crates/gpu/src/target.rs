@@ -27,17 +27,15 @@ impl Target {
     pub(crate) fn new(gpu: &Gpu, view: &View) -> Result<Self, Error> {
         let (width, height) = (view.width(), view.height());
         let pixels = u64::from(width) * u64::from(height);
-        let too_large = |bytes: u64, limit: u64| {
+        let (bytes, limit) = (pixels * 8, gpu.binding_bytes_max());
+        if bytes > limit {
             let adapter = gpu.name().to_owned();
-            Error::PictureTooLarge { width, height, bytes, limit, adapter }
-        };
-        let limit = gpu.binding_bytes_max();
-        if pixels * 8 > limit {
-            return Err(too_large(pixels * 8, limit));
+            return Err(Error::PictureTooLarge { width, height, bytes, limit, adapter });
         }
-        let side = gpu.device.limits().max_texture_dimension_2d;
-        if width.max(height) > side {
-            return Err(too_large(pixels * 4, u64::from(side) * u64::from(side) * 4));
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        if width.max(height) > limit {
+            let adapter = gpu.name().to_owned();
+            return Err(Error::PictureTooWide { width, height, limit, adapter });
         }
         let camera_bytes = size_of::<CameraData>() as u64;
         let known = (!gpu.is_wide()).then(|| storage(gpu, "Target::known", pixels * 4));
