@@ -276,6 +276,25 @@ fn scenes_larger_than_the_budget_are_shaded() {
     }
 }
 
+/// Large pictures are shaded in more than one band.
+#[test]
+fn large_pictures_are_shaded_in_bands() {
+    let Some(gpu) = open(Extent::Full) else { return };
+    let (scene, grid) = cloud(15, 10_000, [0.005, 0.1]);
+    let view = view(&mut Pcg64Mcg::seed_from_u64(16), 1.6).with_size(1151, 1000).unwrap();
+    let map = ColorMap::default();
+    let coloring = Coloring::Scalar { name: "charge", map: &map, range: None };
+    let shading = Shading { coloring, supersample: 2, ..Shading::default() };
+    let (picture, cpu) = by_cpu(&scene, &grid, &view, &shading);
+    assert!(picture.id.len() > 1 << 22);
+    let mut on_gpu = pipeline(&gpu, 1 << 24);
+    let drawn = on_gpu.render(&scene, &grid, &fine(&view, 2)).unwrap();
+    let found = by_gpu(&mut on_gpu, (&scene, &grid), &shading, 0);
+    let mut tally = Tally::default();
+    tally.add("bands", (&cpu, &picture), (&found, &drawn));
+    tally.check();
+}
+
 /// With ambient light alone, a covered pixel shows its color and any other one the background. Nothing
 /// is left over, whatever was in the buffers before.
 #[test]
