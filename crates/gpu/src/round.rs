@@ -16,8 +16,8 @@ use crate::{
     frame::tiles,
     kernel::{Pool, Work, uniform},
     kernels::Kernels,
+    picture::Frame,
     raster::{Canvas, Raster},
-    renderer::Frame,
     store::Page,
 };
 use bytemuck::{Pod, Zeroable};
