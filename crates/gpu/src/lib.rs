@@ -89,6 +89,7 @@ mod round;
 mod runs;
 mod shade;
 mod shade_list;
+mod shade_pass;
 mod shaded;
 mod store;
 mod survey;

@@ -8,7 +8,7 @@ use crate::{
     raster::Raster,
     residency::SEGMENT,
     round::Bench,
-    shade::Shading,
+    shade_pass::Shading,
     store::{Ring, Store},
     survey,
 };

@@ -19,12 +19,12 @@ in groups, as they are for drawing.
 */
 
 use crate::{
-    Error, Gpu, GpuRenderer, Shaded,
-    kernel::{Kernel, Work, shader, storage, uniform},
+    Error, GpuRenderer, Shaded,
     paint::Paint,
     residency::SEGMENT,
-    round::{Batch, CHUNK, CHUNKS_MAX, IS_RECALLED, Piece, RoundData},
+    round::{Batch, CHUNK, CHUNKS_MAX, IS_RECALLED, Piece},
     shade_list::{Entry, list},
+    shade_pass::{Shading, Tables},
     store::Store,
     table::Known,
 };
@@ -57,50 +57,22 @@ const LISTED_MAX: u64 = 1 << 18;
 
 const ENTRY_BYTES: u64 = size_of::<Entry>() as u64;
 
-const SEEN: &str = shader!("camera", "visibility_read", "shade_common", "shade_seen");
-const TABLE: &str = shader!("camera", "disc", "place", "shade_common", "shade_table");
-const SHADE: &str = shader!("camera", "disc", "visibility_read", "shade_common", "shade");
-
-/// What shading needs, from one image to the next.
-#[derive(Debug)]
-pub(crate) struct Shading {
-    mark: Kernel,
-    number: Kernel,
-    enter: Kernel,
-    enter_listed: Kernel,
-    shade: Kernel,
-    data: wgpu::Buffer,
-    listed: wgpu::Buffer,
-    total: wgpu::Buffer,
-    shaded: Shaded,
-}
-
 /// `Shade` of `shade_common.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-struct ShadeData {
-    size: [u32; 2],
-    factor: u32,
-    ambient: f32,
-    first_row: u32,
-    rows: u32,
-    per_record: u32,
-    has_background: u32,
-    top: [f32; 3],
-    words: u32,
-    bottom: [f32; 3],
-    spare: u32,
-    decode: [f32; 256],
-}
-
-/// The buffers of a band.
-#[derive(Debug)]
-struct Tables {
-    seen: wgpu::Buffer,
-    bases: wgpu::Buffer,
-    table: wgpu::Buffer,
-    /// The colors of pages, or the only one.
-    uniform: Option<wgpu::Buffer>,
+pub(crate) struct ShadeData {
+    pub(crate) size: [u32; 2],
+    pub(crate) factor: u32,
+    pub(crate) ambient: f32,
+    pub(crate) first_row: u32,
+    pub(crate) rows: u32,
+    pub(crate) per_record: u32,
+    pub(crate) has_background: u32,
+    pub(crate) top: [f32; 3],
+    pub(crate) words: u32,
+    pub(crate) bottom: [f32; 3],
+    pub(crate) spare: u32,
+    pub(crate) decode: [f32; 256],
 }
 
 impl GpuRenderer {
@@ -125,7 +97,7 @@ impl GpuRenderer {
         let data = ShadeData::new(&frame.target.view, config, paint)?;
         let shading = match self.shading.take() {
             Some(known) if known.shaded.size() == data.size => known,
-            Some(known) => Shading { shaded: Shaded::new(&self.gpu, data.size)?, ..known },
+            Some(known) => known.resized(&self.gpu, data.size)?,
             None => Shading::new(&self.gpu, data.size)?,
         };
         let result = self.shade_all(content, (&shading, data), paint);
@@ -305,167 +277,6 @@ impl GpuRenderer {
             }
         }
         Ok(())
-    }
-}
-
-impl Shading {
-    fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
-        let shaded = Shaded::new(gpu, size)?;
-        let data = uniform(gpu, "Shading::data", size_of::<ShadeData>() as u64)?;
-        let listed = uniform(gpu, "Shading::listed", 16)?;
-        let total = storage(gpu, "Shading::total", 16)?;
-        gpu.guard("pipelines", || {
-            let kernel = |label, source, entry| Kernel::new(gpu, label, (source, entry), &[]);
-            Self {
-                mark: kernel("Shading::mark", SEEN, "mark_band"),
-                number: kernel("Shading::number", SEEN, "number_ids"),
-                enter: kernel("Shading::enter", TABLE, "enter"),
-                enter_listed: kernel("Shading::enter_listed", TABLE, "enter_listed"),
-                shade: kernel("Shading::shade", SHADE, "shade_band"),
-                data,
-                listed,
-                total,
-                shaded,
-            }
-        })
-    }
-
-    /// Finds which ids are seen in a band, and numbers them.
-    fn begin(
-        &self,
-        renderer: &GpuRenderer,
-        data: &ShadeData,
-        tables: &Tables,
-    ) -> Result<(), Error> {
-        let GpuRenderer { gpu, frame: Some(frame), .. } = renderer else { return Ok(()) };
-        gpu.guard("what is seen", || {
-            gpu.queue.write_buffer(&self.data, 0, bytemuck::bytes_of(data));
-            let mut work = Work::new(gpu, "Shading::begin");
-            work.encoder.clear_buffer(&tables.seen, 0, Some(u64::from(data.words) * 4));
-            work.encoder.clear_buffer(&self.total, 0, None);
-            let bindings = [
-                (0, frame.target.camera.as_entire_binding()),
-                (2, self.data.as_entire_binding()),
-                (9, frame.target.visibility.as_entire_binding()),
-                (10, tables.seen.as_entire_binding()),
-            ];
-            let items = data.rows * data.size[0] * data.factor * data.factor;
-            self.mark.run(&mut work, &bindings, items);
-            let bindings = [
-                (2, self.data.as_entire_binding()),
-                (7, self.total.as_entire_binding()),
-                (10, tables.seen.as_entire_binding()),
-                (13, tables.bases.as_entire_binding()),
-            ];
-            self.number.run(&mut work, &bindings, data.words);
-            work.submit();
-        })
-    }
-
-    /// Enters those records of pieces that are seen, of bricks that were drawn.
-    fn enter_page(
-        &self,
-        renderer: &mut GpuRenderer,
-        tables: &Tables,
-        (page, pieces): (usize, &[Piece]),
-    ) -> Result<(), Error> {
-        let GpuRenderer { gpu, kernels, bench, store, frame, .. } = renderer;
-        let (Some(store), Some(frame)) = (store, frame) else { return Ok(()) };
-        let colors = match &tables.uniform {
-            Some(only) => only.clone(),
-            None => store.colors(gpu, page)?,
-        };
-        let page = store.page(gpu, page)?;
-        let runs = frame.table.buffer(gpu)?;
-        let chunks: u32 = pieces.iter().map(|piece| piece.count.div_ceil(CHUNK)).sum();
-        let pool = &mut bench.pool;
-        let list = pool.filled(gpu, "Round::pieces", pieces)?;
-        let cut = pool.storage(gpu, "Round::chunks", u64::from(chunks) * 8)?;
-        // Culling notes what it lets pass, which is of no use here.
-        let passed = pool.storage(gpu, "Shading::passed", frame.drawn.size())?;
-        let count = u32::try_from(pieces.len()).unwrap_or(u32::MAX);
-        let round = RoundData { pieces: count, capacity: 0, small: 0, pass_of_two: 0 };
-        let round = bench.write_round(gpu, round);
-        gpu.guard("a table of records", || {
-            let mut work = Work::new(gpu, "Shading::enter_page");
-            work.encoder.clear_buffer(&bench.counts, 0, Some(12));
-            let bindings = [
-                (0, frame.target.camera.as_entire_binding()),
-                (1, runs.as_entire_binding()),
-                (2, round.as_entire_binding()),
-                (3, list.as_entire_binding()),
-                (5, cut.as_entire_binding()),
-                (7, bench.counts.as_entire_binding()),
-                (8, frame.target.tiles.as_entire_binding()),
-                (10, passed.as_entire_binding()),
-                (12, frame.drawn.as_entire_binding()),
-            ];
-            kernels.cull.run(&mut work, &bindings, count);
-            let counted =
-                [(7, bench.counts.as_entire_binding()), (11, bench.arguments.as_entire_binding())];
-            kernels.over_chunks.run_once(&mut work, &counted);
-            let bindings = [
-                (0, frame.target.camera.as_entire_binding()),
-                (1, runs.as_entire_binding()),
-                (2, self.data.as_entire_binding()),
-                (3, page.spheres.as_entire_binding()),
-                (4, page.ids.as_entire_binding()),
-                (5, cut.as_entire_binding()),
-                (10, tables.seen.as_entire_binding()),
-                (13, tables.bases.as_entire_binding()),
-                (14, colors.as_entire_binding()),
-                (15, tables.table.as_entire_binding()),
-            ];
-            self.enter.run_indirect(&mut work, &bindings, (&bench.arguments, 0));
-            work.submit();
-        })
-    }
-
-    /// Enters those of listed records that are seen.
-    fn enter_listed(
-        &self,
-        renderer: &mut GpuRenderer,
-        tables: &Tables,
-        (ids, entries): (&[u32], &[Entry]),
-    ) -> Result<(), Error> {
-        let GpuRenderer { gpu, bench, .. } = renderer;
-        let count = u32::try_from(ids.len()).unwrap_or(u32::MAX);
-        let ids = bench.pool.filled(gpu, "Shading::ids", ids)?;
-        let entries = bench.pool.filled(gpu, "Shading::entries", entries)?;
-        gpu.guard("a list of records", || {
-            gpu.queue.write_buffer(&self.listed, 0, bytemuck::bytes_of(&[count; 4]));
-            let mut work = Work::new(gpu, "Shading::enter_listed");
-            let bindings = [
-                (4, ids.as_entire_binding()),
-                (6, entries.as_entire_binding()),
-                (7, self.listed.as_entire_binding()),
-                (10, tables.seen.as_entire_binding()),
-                (13, tables.bases.as_entire_binding()),
-                (15, tables.table.as_entire_binding()),
-            ];
-            self.enter_listed.run(&mut work, &bindings, count);
-            work.submit();
-        })
-    }
-
-    /// Makes a band of the image.
-    fn end(&self, renderer: &GpuRenderer, data: &ShadeData, tables: &Tables) -> Result<(), Error> {
-        let GpuRenderer { gpu, frame: Some(frame), .. } = renderer else { return Ok(()) };
-        gpu.guard("an image", || {
-            let mut work = Work::new(gpu, "Shading::end");
-            let bindings = [
-                (0, frame.target.camera.as_entire_binding()),
-                (2, self.data.as_entire_binding()),
-                (9, frame.target.visibility.as_entire_binding()),
-                (10, tables.seen.as_entire_binding()),
-                (13, tables.bases.as_entire_binding()),
-                (15, tables.table.as_entire_binding()),
-                (16, wgpu::BindingResource::TextureView(self.shaded.color())),
-                (17, wgpu::BindingResource::TextureView(self.shaded.depth())),
-            ];
-            self.shade.run(&mut work, &bindings, data.rows * data.size[0]);
-            work.submit();
-        })
     }
 }
 
