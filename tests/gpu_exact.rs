@@ -1,6 +1,7 @@
 //! Promise 1 on the GPU: every set-up gives the same picture, on all that WebGPU has as on all that
 //! the adapter has; it is that of the reference in `f64` and that of the renderer on the CPU.
 
+#![cfg(feature = "gpu")]
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,

@@ -1,6 +1,7 @@
 //! What may go wrong on a GPU: typed errors that say what is at fault, no panic, nothing that leaks,
 //! and a program's own device is left as it was.
 
+#![cfg(feature = "gpu")]
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
