@@ -15,6 +15,8 @@ mod renderer;
 mod residency;
 mod round;
 mod runs;
+#[cfg(test)]
+mod shaders;
 mod store;
 mod survey;
 mod table;

@@ -133,7 +133,7 @@ pub(crate) const fn vertices(setup: Setup, fragment: Fragment) -> (u32, bool) {
     }
 }
 
-fn source(setup: Setup, fragment: Fragment, is_wide: bool) -> String {
+pub(crate) fn source(setup: Setup, fragment: Fragment, is_wide: bool) -> String {
     let head = if setup == Setup::Mesh { "enable wgpu_mesh_shader;\n" } else { "" };
     let visibility =
         if is_wide { shader!("visibility_wide") } else { shader!("visibility_narrow") };
@@ -148,16 +148,20 @@ fn source(setup: Setup, fragment: Fragment, is_wide: bool) -> String {
     [head, common, visibility, &early, mesh].concat()
 }
 
-fn splat(gpu: &Gpu, fragment: Fragment, is_wide: bool) -> Kernel {
+pub(crate) fn splat_source(is_wide: bool) -> String {
     let common = shader!("camera", "disc", "work", "splat");
     let visibility =
         if is_wide { shader!("visibility_wide") } else { shader!("visibility_narrow") };
+    [common, visibility].concat()
+}
+
+fn splat(gpu: &Gpu, fragment: Fragment, is_wide: bool) -> Kernel {
     let entry = match fragment {
         Fragment::Point => "splat_point",
         Fragment::Proxy => "splat_proxy",
         _ => "splat",
     };
-    Kernel::new(gpu, "Raster::splat", (&[common, visibility].concat(), entry), &[])
+    Kernel::new(gpu, "Raster::splat", (&splat_source(is_wide), entry), &[])
 }
 
 fn entries(setup: Setup, fragment: Fragment) -> (&'static str, &'static str) {
