@@ -27,7 +27,7 @@ mod naive;
 mod scenes;
 
 /// What the renderer on the GPU promises: see `naive::Pixels`.
-const GPU: f64 = 1e-3;
+const GPU: naive::Pixels = 1e-3;
 
 fn grid(scene: &mut Scene, cells: u32) -> Grid {
     Grid::sort_scene(scene, &GridConfig::longest_side(cells)).unwrap()

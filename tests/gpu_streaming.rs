@@ -148,7 +148,7 @@ fn scenes_may_be_larger_than_a_binding() {
         wgpu::Limits { max_storage_buffer_binding_size: limit, ..wgpu::Limits::default() };
     let gpu = gpu::own_device(&required_limits);
     let count = 2_300_000;
-    assert!(count as u64 * 16 > u64::from(limit));
+    assert!(count as u64 * 16 > limit);
     let mut random = Pcg64Mcg::seed_from_u64(7);
     let mut scene = Scene::new(cloud(&mut random, count, 1.0, [1e-4, 3e-3]));
     let grid = Grid::sort_scene(&mut scene, &GridConfig::default()).unwrap();
