@@ -20,6 +20,24 @@ if ! command -v cargo >/dev/null; then
   rustup toolchain install stable --profile default
 fi
 
+# Without a GPU, the software driver draws; the viewer is tried in a virtual display.
+# PUNCTA_NO_GPU=1 leaves out the tests that need either.
+if [ "${PUNCTA_NO_GPU:-}" != 1 ] && [ "$(uname)" = Linux ] && command -v apt-get >/dev/null; then
+  wanted=()
+  ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json >/dev/null 2>&1 ||
+    wanted+=(mesa-vulkan-drivers)
+  ldconfig -p | grep -q libvulkan.so.1 || wanted+=(libvulkan1)
+  command -v Xvfb >/dev/null || wanted+=(xvfb)
+  for library in libxkbcommon-x11 libXcursor libXi libXrandr libX11-xcb; do
+    ldconfig -p | grep -q "$library.so" ||
+      wanted+=(libxkbcommon-x11-0 libxcursor1 libxi6 libxrandr2 libx11-xcb1)
+  done
+  if [ "${#wanted[@]}" -gt 0 ]; then
+    as_root apt-get update
+    as_root apt-get install -y --no-install-recommends "${wanted[@]}"
+  fi
+fi
+
 step() {
   printf '\n== %s\n' "$*"
   "$@"

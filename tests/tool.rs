@@ -3,7 +3,8 @@
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
-    reason = "a test may panic, and its numbers are small"
+    clippy::print_stdout,
+    reason = "a test may panic and talk, and its numbers are small"
 )]
 
 use std::{
@@ -204,4 +205,48 @@ fn skipped_records_are_told_and_ids_stay_those_of_the_file() {
     let ids: Vec<u32> = tool.array("ids.npy").into_iter().map(u32::from_le_bytes).collect();
     assert!(ids.contains(&1) && ids.iter().all(|id| [1, u32::MAX].contains(id)));
     assert!(tool.fail(&["bad.xyz", "--strict"]).contains("line 3"));
+}
+
+/// The same options on a GPU give the same numbers: at most one in 100,000 pixels shows another
+/// record, and depths of the same record are those of exact arithmetic.
+#[test]
+fn a_gpu_draws_the_same_numbers() {
+    let tool = Tool::new();
+    tool.write("atoms.xyz", xyz(0.0));
+    let mut inputs = vec!["atoms.xyz".to_owned(), "cube:n=60000,r=0.02".to_owned()];
+    if let Some(data) = std::env::var_os("PUNCTA_DATA") {
+        let membrane = PathBuf::from(data).join("bace_membrane.pdb");
+        inputs.push(membrane.to_str().unwrap().to_owned());
+    }
+    if std::env::var_os("PUNCTA_NO_GPU").is_some() {
+        println!("PUNCTA_NO_GPU is set: no GPU is tried");
+        let said = tool.fail(&["atoms.xyz", "--backend", "gpu", "--adapter", "none such"]);
+        assert!(said.contains("no GPU adapter") && said.contains("none such"), "{said}");
+        return;
+    }
+    for input in inputs {
+        let numbers = |backend: &str, options: &[&str]| {
+            let common = [&input, "--size", "500x400", "--supersample", "1", "--backend", backend];
+            tool.succeed(&[&common, options].concat());
+        };
+        numbers("cpu", &["--ids", "a.npy", "--depth", "a_d.npy", "--out", "a.png"]);
+        for setup in ["compute", "triangle"] {
+            let files = ["--ids", "b.npy", "--depth", "b_d.npy", "--out", "b.png"];
+            numbers("gpu", &[&["--setup", setup], &files[..]].concat());
+            let (ids, other_ids) = (tool.array("a.npy"), tool.array("b.npy"));
+            let (depths, other_depths) = (tool.array("a_d.npy"), tool.array("b_d.npy"));
+            assert!(ids.iter().filter(|id| **id != [255; 4]).count() > 10_000);
+            let differ = ids.iter().zip(&other_ids).filter(|(a, b)| a != b).count();
+            assert!(differ * 100_000 <= ids.len(), "{input}, {setup}: {differ} ids differ");
+            let pixels = ids.iter().zip(&other_ids).zip(depths.iter().zip(&other_depths));
+            for (_, (a, b)) in pixels.filter(|((a, b), _)| a == b) {
+                let (a, b) = (f32::from_le_bytes(*a), f32::from_le_bytes(*b));
+                // Either is off by 2^-22 at most.
+                assert!(a == b || (a - b).abs() <= a * 2.0_f32.powi(-21), "{input}: {a} {b}");
+            }
+        }
+    }
+    let said = tool.fail(&["atoms.xyz", "--backend", "gpu", "--adapter", "none such"]);
+    assert!(said.contains("no GPU adapter") && said.contains("none such"), "{said}");
+    tool.fail(&["atoms.xyz", "--setup", "mesh"]);
 }

@@ -2,6 +2,7 @@
 
 pub use puncta_core as core;
 pub use puncta_cpu as cpu;
+#[cfg(feature = "gpu")]
 pub use puncta_gpu as gpu;
 pub use puncta_grid as grid;
 pub use puncta_io as io;
@@ -12,7 +13,8 @@ pub use puncta_core::{
     Pipeline, Progress, Projection, Record, Renderer, Scene, Source, Sphere, Stage, Step, View,
     Visible,
 };
-pub use puncta_cpu::{Background, ColorMap, Coloring, CpuRenderer, Shading, shade};
+pub use puncta_cpu::{Background, ColorMap, Coloring, Colors, CpuRenderer, Shading, shade};
+#[cfg(feature = "gpu")]
 pub use puncta_gpu::{Gpu, GpuConfig, GpuRenderer};
 #[cfg(all(target_endian = "little", any(unix, windows)))]
 pub use puncta_grid::{BrickFile, ConvertConfig, convert};

@@ -1,7 +1,7 @@
 //! The scenes that are measured: full blocks of bricks, and scenes in several grids.
 
 use crate::{
-    clock::Span,
+    clock::{self, Span},
     frame::{self, Way},
     input::Input,
     part::{self, Part},
@@ -32,18 +32,8 @@ impl Case {
     /// The median of the times of a part.
     pub(crate) fn median(&self, part: Part) -> Option<Span> {
         let (_, spans) = self.parts.iter().find(|(which, _)| *which == part)?;
-        median(spans)
+        clock::median(spans)
     }
-}
-
-/// The medians of walls and of processors.
-pub(crate) fn median(spans: &[Span]) -> Option<Span> {
-    let middle = |of: fn(&Span) -> f64| {
-        let mut seconds: Vec<f64> = spans.iter().map(of).collect();
-        seconds.sort_by(f64::total_cmp);
-        seconds.get(seconds.len() / 2).copied()
-    };
-    Some(Span { wall: middle(|span| span.wall)?, processors: middle(|span| span.processors)? })
 }
 
 /// How often to measure.

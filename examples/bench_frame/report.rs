@@ -1,8 +1,8 @@
 //! What was measured, as text, as tables and as JSON.
 
 use crate::{
-    case::{Case, median},
-    clock::Span,
+    case::Case,
+    clock::{Span, median},
     order::Order,
     part::Part,
     thesis::{self, Line},

@@ -28,6 +28,16 @@ pub(crate) fn time<T>(work: impl FnOnce() -> T) -> (T, Span) {
     (result, Span { wall: wall.elapsed().as_secs_f64(), processors: spent })
 }
 
+/// The medians of walls and of processors.
+pub(crate) fn median(spans: &[Span]) -> Option<Span> {
+    let middle = |of: fn(&Span) -> f64| {
+        let mut seconds: Vec<f64> = spans.iter().map(of).collect();
+        seconds.sort_by(f64::total_cmp);
+        seconds.get(seconds.len() / 2).copied()
+    };
+    Some(Span { wall: middle(|span| span.wall)?, processors: middle(|span| span.processors)? })
+}
+
 #[cfg(unix)]
 fn processors() -> f64 {
     let now = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);

@@ -1,7 +1,7 @@
 //! The scene: from a file, a generator, or built in.
 
 use crate::{
-    options::{ColorBy, Options, Radii},
+    options::{ColorBy, Columns, Options, Radii},
     progress::Bar,
 };
 use anyhow::{Context, Result, bail};
@@ -199,8 +199,11 @@ fn read_file(name: &str, options: &Options) -> Result<Input> {
     if let Some(radius) = options.radius {
         reader = reader.radius(radius);
     }
-    let Loaded { scene, format, report } =
-        reader.clone().scalars(Scalars::Named(wanted.clone())).read(name)?;
+    let scalars = match options.columns {
+        Columns::Needed => Scalars::Named(wanted.clone()),
+        Columns::All => Scalars::All,
+    };
+    let Loaded { scene, format, report } = reader.clone().scalars(scalars).read(name)?;
     bar.finish();
     if wanted.iter().any(|wanted| scene.scalar(wanted).is_none()) {
         let all = reader.scalars(Scalars::All).read(name)?.scene.attributes.scalars;

@@ -1,10 +1,11 @@
-//! Draws a particle or point file, or a synthetic scene, exactly, on the CPU.
+//! Draws a particle or point file, or a synthetic scene, exactly, on the CPU or a GPU.
 //!
 //! ```text
 //! cargo run --release --example render -- INPUT [options]
 //! cargo run --release --example render -- --help
 //! ```
 
+mod backend;
 mod input;
 mod options;
 mod output;
@@ -13,11 +14,11 @@ mod statistics;
 mod view;
 
 use anyhow::{Context, Result};
+use backend::Backend;
 use clap::Parser;
 use options::Options;
 use puncta::{
-    CpuRenderer, Depth, FrustumCull, Grid, GridConfig, Picture, Pipeline, Resolution, Scene,
-    Sphere, View,
+    Depth, FrustumCull, Grid, GridConfig, Picture, Pipeline, Resolution, Scene, Sphere, View,
 };
 use statistics::Statistics;
 use std::io::Write;
@@ -42,11 +43,15 @@ fn run(options: &Options) -> Result<()> {
     }
     let view = statistics.time("view", || view::choose(options, &input))?;
     let look = output::Look::new(options, &input, &view)?;
+    let backend = Backend::new(options)?;
+    statistics.backend.clone_from(&backend.name);
+    let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), backend);
     let grid = statistics.time("sort", || sort(options, &mut input))?;
-    let picture = draw(&input.scene, &grid, &view, "frame", &mut statistics)?;
+    let picture = draw(&mut pipeline, (&input.scene, &grid), &view, ("frame", &mut statistics))?;
     statistics.describe(&input, &grid, &view, &picture);
     output::write_numbers(options, &input.scene, &picture)?;
-    let image = output::image(options, (&input, &grid), &look, picture, &mut statistics)?;
+    let image =
+        output::image(options, (&input, &grid), &look, picture, (&mut pipeline, &mut statistics))?;
     statistics.time("write", || output::write_image(options, &image))?;
     statistics.finish(options)?;
     // Nobody may be listening any more; the files are written all the same.
@@ -69,15 +74,16 @@ fn sort(options: &Options, input: &mut input::Input) -> Result<Grid> {
     Ok(grid)
 }
 
+/// What draws the pictures.
+type Drawing = Pipeline<(FrustumCull, Depth), Backend>;
+
 /// Draws the whole picture, with a progress bar, and notes the time it takes.
 fn draw(
-    scene: &Scene<Sphere>,
-    grid: &Grid,
+    pipeline: &mut Drawing,
+    (scene, grid): (&Scene<Sphere>, &Grid),
     view: &View,
-    step: &'static str,
-    statistics: &mut Statistics,
+    (step, statistics): (&'static str, &mut Statistics),
 ) -> Result<Picture> {
-    let mut pipeline = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::default());
     let budget = (scene.records.len() as u64 / 100).max(1 << 18);
     let (picture, progress) = statistics.time(step, || {
         let mut steps = pipeline.progressive(scene, grid, view, budget)?;

@@ -5,8 +5,8 @@ use glam::DVec3;
 use puncta::{Background, ColorMap, io::synthetic::Generator};
 use std::{num::NonZero, path::PathBuf};
 
-/// Draws a particle or point file, or a synthetic scene, exactly, on the CPU.
-#[derive(Debug, Parser)]
+/// Draws a particle or point file, or a synthetic scene, exactly, on the CPU or a GPU.
+#[derive(Clone, Debug, Parser)]
 #[command(name = "render", version, after_help = after_help())]
 pub(crate) struct Options {
     /// A file (XYZ, extended XYZ, LAMMPS dump, PDB, MMPLD, PLY, LAS, LAZ, legacy VTK; gzip is fine),
@@ -95,6 +95,23 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N")]
     pub(crate) grid: Option<NonZero<u32>>,
 
+    /// What draws
+    #[arg(long, value_enum, default_value_t = BackendKind::Cpu)]
+    pub(crate) backend: BackendKind,
+
+    /// A part of the name of the GPU to draw with; the fastest by default
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+
+    /// How spheres become fragments: instanced, pulled, triangle, mesh or compute; by default what
+    /// suits the GPU
+    #[arg(long, value_name = "SETUP")]
+    pub(crate) setup: Option<String>,
+
+    /// What fragments do: sphere or sphere-early; point and proxy are not exact
+    #[arg(long, value_name = "FRAGMENT")]
+    pub(crate) fragment: Option<String>,
+
     /// Threads to draw with, at most 1024; all cores by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
@@ -114,6 +131,30 @@ pub(crate) struct Options {
     /// Write counts, bytes and seconds
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
+
+    /// Which scalars to read besides the one to color by: not for the command line.
+    #[arg(skip)]
+    pub(crate) columns: Columns,
+}
+
+/// Which scalars to read of a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Columns {
+    /// That to color by.
+    #[default]
+    Needed,
+    /// All, to choose among them later.
+    #[allow(dead_code, reason = "only the example `viewer` asks for it")]
+    All,
+}
+
+/// What draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum BackendKind {
+    /// All cores; needs nothing
+    Cpu,
+    /// A GPU, through Vulkan, Metal, DirectX or OpenGL
+    Gpu,
 }
 
 /// Which radii to take for atoms.

@@ -1,7 +1,7 @@
 //! What comes out: an image, arrays of numbers.
 
 use crate::{
-    draw,
+    Drawing, draw,
     input::Input,
     options::{ColorBy, Options},
     progress::Bar,
@@ -64,13 +64,13 @@ pub(crate) fn image(
     (input, grid): (&Input, &Grid),
     look: &Look,
     picture: Picture,
-    statistics: &mut Statistics,
+    (pipeline, statistics): (&mut Drawing, &mut Statistics),
 ) -> Result<Image> {
     let coloring = coloring(options, input, &look.map);
     let (view, supersample) = (&look.fine, look.supersample);
     let picture = if supersample > 1 {
         drop(picture);
-        draw(&input.scene, grid, view, "supersample", statistics)?
+        draw(pipeline, (&input.scene, grid), view, ("supersample", statistics))?
     } else {
         picture
     };

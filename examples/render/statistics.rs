@@ -11,6 +11,8 @@ use std::{fmt, fs, time::Instant};
 pub(crate) struct Statistics {
     /// The bricks and records that were drawn for the first picture.
     pub(crate) drawn: Amount,
+    /// What draws.
+    pub(crate) backend: String,
     seconds: Vec<(&'static str, f64)>,
     values: Map<String, Value>,
 }
@@ -47,6 +49,7 @@ impl Statistics {
                 "up": view.up().to_array(),
                 "near": view.near(),
             },
+            "backend": self.backend,
             "threads": rayon::current_num_threads(),
             "bytes": {
                 "records": size_of_val(input.scene.records.as_slice()),

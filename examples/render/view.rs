@@ -56,7 +56,7 @@ fn usual_up(up: DVec3, sight: Option<DVec3>) -> DVec3 {
 }
 
 /// The box to look at: all records, unless strays make it many times as large as the rest.
-fn bounds(input: &Input) -> Bounds {
+pub(crate) fn bounds(input: &Input) -> Bounds {
     let all = input.bounds;
     let inner = match &input.known {
         Some(known) => known.inner,

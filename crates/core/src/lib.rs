@@ -32,6 +32,7 @@ sphere that holds the camera is not drawn (the ray never enters it), and where t
 a sphere open, one looks through the cut at what lies behind.
 */
 
+mod background;
 mod bound;
 mod bounds;
 mod brick;
@@ -53,6 +54,7 @@ mod stage;
 mod view;
 
 pub use crate::{
+    background::Background,
     bound::{Bounder, ScreenBound, depth_below},
     bounds::{Aabb, Bounds},
     brick::{Block, Brick, Bricks, Visible, VisibleBrick},

@@ -40,6 +40,7 @@ pool. What a pixel shows does not depend on the order of the spheres nor on the 
 
 mod band;
 mod cache;
+mod coloring;
 mod colormap;
 mod disc;
 mod drawing;
@@ -52,9 +53,11 @@ mod survey;
 mod tiles;
 
 pub use crate::{
+    coloring::{Coloring, Colors},
     colormap::ColorMap,
     error::Error,
     legend::draw_legend,
     renderer::CpuRenderer,
-    shade::{Background, Coloring, Shading, shade},
+    shade::{Shading, shade},
 };
+pub use puncta_core::Background;

@@ -10,13 +10,10 @@ have more pixels than the image; then a block of them is averaged for each pixel
 smooths silhouettes.
 */
 
-use crate::{ColorMap, Error};
-use glam::{DVec3, Vec3};
-use puncta_core::{Camera, Image, NO_RECORD, Picture, Record, Scene, View, inner_range};
+use crate::{Coloring, Error};
+use glam::Vec3;
+use puncta_core::{Background, Camera, Image, NO_RECORD, Picture, Record, Scene, View};
 use rayon::prelude::*;
-
-/// The share of records that may lie outside of a range on either side.
-const OUTSIDE: f64 = 0.002;
 
 /// How to make an image of a picture.
 #[derive(Clone, Debug)]
@@ -42,52 +39,6 @@ impl Default for Shading<'_> {
     }
 }
 
-/// Where the colors of records come from. All colors are sRGB.
-#[derive(Clone, Copy, Debug)]
-pub enum Coloring<'a> {
-    /// One color for all.
-    Uniform([u8; 3]),
-    /// The colors of the scene.
-    Colors,
-    /// A color for each atomic number; numbers beyond the list get the first one.
-    Elements(&'a [[u8; 3]]),
-    /// A scalar through a color map.
-    Scalar {
-        /// The name of the scalar.
-        name: &'a str,
-        /// The colors of the range.
-        map: &'a ColorMap,
-        /// The values of the map's ends; `None` for nearly the range of the scalar.
-        range: Option<[f64; 2]>,
-    },
-    /// The distance along an axis through a color map.
-    Height {
-        /// The direction that is up in the world.
-        axis: DVec3,
-        /// The colors of the range.
-        map: &'a ColorMap,
-        /// The values of the map's ends; `None` for nearly the range of the scene.
-        range: Option<[f64; 2]>,
-    },
-}
-
-/// What is seen where there is no record. All colors are sRGB.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Background {
-    /// One color.
-    Solid([u8; 3]),
-    /// A color at the top row that turns into another at the bottom row.
-    Gradient([u8; 3], [u8; 3]),
-    /// Nothing: the image has alpha 0 there.
-    Transparent,
-}
-
-impl Default for Background {
-    fn default() -> Self {
-        Self::Gradient([24, 28, 36], [66, 75, 88])
-    }
-}
-
 /// Makes an image of a picture of this scene.
 ///
 /// The image has the size of `view`; `picture` has [`Shading::supersample`] times as many rows and
@@ -106,7 +57,7 @@ pub fn shade<R: Record>(
     let factor = check(scene, view, picture, shading)?;
     let fine = view.clone().with_size(picture.width, picture.height)?;
     let camera = Camera::new(&fine, scene.origin);
-    let colors = Colors::new(scene, shading.coloring)?;
+    let colors = shading.coloring.colors(scene)?;
     let records = scene.records.as_slice();
     let decode: [f32; 256] = std::array::from_fn(|byte| decode(byte as f32 / 255.0));
     let light = |column: usize, row: usize| -> Option<Vec3> {
@@ -117,7 +68,7 @@ pub fn shade<R: Record>(
         let hit = camera.hit(ray, center, f64::from(record.radius()));
         // At a silhouette the surface is seen edge-on, whatever rounding says.
         let facing = hit.map_or(0.0, |hit| to_f32(hit.facing).clamp(0.0, 1.0));
-        let color = Vec3::from(colors.of(id as usize, record).map(|c| decode[usize::from(c)]));
+        let color = Vec3::from(colors.of(id).map(|c| decode[usize::from(c)]));
         Some(color * (shading.ambient + (1.0 - shading.ambient) * facing))
     };
     let (width, height) = (view.width() as usize, view.height() as usize);
@@ -137,106 +88,6 @@ pub fn shade<R: Record>(
         }
     });
     Ok(Image { width: view.width(), height: view.height(), pixels })
-}
-
-impl Coloring<'_> {
-    /// Checks that a scene has what this coloring needs, without looking at any value.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NoColumn`] when it has not.
-    pub fn check<R: Record>(&self, scene: &Scene<R>) -> Result<(), Error> {
-        let missing = match *self {
-            Self::Colors if scene.attributes.colors.is_none() => "colors",
-            Self::Elements(_) if scene.attributes.elements.is_none() => "elements",
-            Self::Scalar { name, .. } => return scalar(scene, name).map(|_| ()),
-            _ => return Ok(()),
-        };
-        Err(Error::NoColumn { what: missing.to_owned() })
-    }
-
-    /// The values that the ends of the color map stand for; `None` if there is no color map.
-    ///
-    /// Unless it is given, the range leaves out the outermost 0.2 % of the records on either side:
-    /// a few strays would turn everything else into one color.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NoColumn`] when the scene has no such scalar.
-    pub fn range<R: Record>(&self, scene: &Scene<R>) -> Result<Option<[f64; 2]>, Error> {
-        Ok(match *self {
-            Coloring::Scalar { range: Some(range), .. }
-            | Coloring::Height { range: Some(range), .. } => Some(range),
-            Coloring::Scalar { name, .. } => {
-                let values = scalar(scene, name)?;
-                Some(inner_range(|| values.iter().map(|&value| f64::from(value)), OUTSIDE))
-            }
-            Coloring::Height { axis, .. } => {
-                let records = scene.records.as_slice();
-                let offsets = || records.iter().map(|record| record.position().as_dvec3());
-                let heights = || offsets().map(|offset| axis.dot(scene.origin + offset));
-                Some(inner_range(heights, OUTSIDE))
-            }
-            _ => None,
-        })
-    }
-}
-
-/// Colors by record.
-enum Colors<'a> {
-    Uniform([u8; 3]),
-    Column(&'a [[u8; 4]]),
-    Elements(&'a [u8], &'a [[u8; 3]]),
-    Scalar(&'a [f32], &'a ColorMap, [f64; 2]),
-    Height(DVec3, DVec3, &'a ColorMap, [f64; 2]),
-}
-
-impl<'a> Colors<'a> {
-    fn new<R: Record>(scene: &'a Scene<R>, coloring: Coloring<'a>) -> Result<Self, Error> {
-        let missing = |what: &str| Error::NoColumn { what: what.to_owned() };
-        let range = coloring.range(scene)?.unwrap_or([0.0, 1.0]);
-        Ok(match coloring {
-            Coloring::Uniform(color) => Self::Uniform(color),
-            Coloring::Colors => {
-                let colors = scene.attributes.colors.as_ref();
-                Self::Column(colors.ok_or_else(|| missing("colors"))?)
-            }
-            Coloring::Elements(palette) => {
-                let elements = scene.attributes.elements.as_ref();
-                Self::Elements(elements.ok_or_else(|| missing("elements"))?, palette)
-            }
-            Coloring::Scalar { name, map, .. } => Self::Scalar(scalar(scene, name)?, map, range),
-            Coloring::Height { axis, map, .. } => Self::Height(axis, scene.origin, map, range),
-        })
-    }
-
-    fn of<R: Record>(&self, id: usize, record: &R) -> [u8; 3] {
-        let share = |value: f64, [low, high]: [f64; 2]| {
-            if high > low { (value - low) / (high - low) } else { 0.5 }
-        };
-        match *self {
-            Self::Uniform(color) => color,
-            Self::Column(colors) => [colors[id][0], colors[id][1], colors[id][2]],
-            Self::Elements(elements, palette) => {
-                let known = palette.get(usize::from(elements[id])).or(palette.first());
-                known.copied().unwrap_or([128; 3])
-            }
-            Self::Scalar(values, map, range) => map.color(share(f64::from(values[id]), range)),
-            Self::Height(axis, origin, map, range) => {
-                let height = axis.dot(origin + record.position().as_dvec3());
-                map.color(share(height, range))
-            }
-        }
-    }
-}
-
-fn scalar<'a, R: Record>(scene: &'a Scene<R>, name: &str) -> Result<&'a [f32], Error> {
-    let scalar = scene.scalar(name).ok_or_else(|| {
-        let names: Vec<&str> = scene.attributes.scalars.iter().map(|s| s.name.as_str()).collect();
-        let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        Error::NoColumn { what: format!("scalar {name:?} (it has {known})") }
-    })?;
-    Ok(&scalar.values)
 }
 
 /// Checks sizes and ids, and returns the supersampling factor.

@@ -36,6 +36,11 @@ fn whole_of(word: u32) -> vec2<i32> {
     return vec2(i32(word << 16u) >> 16u, i32(word) >> 16u);
 }
 
+// A positive depth before which a disc has no point, as `nearest_depth` of the core.
+fn nearest_of(depth: f32, radius: f32) -> f32 {
+    return max(depth - radius - 1e-6 * (abs(depth) + radius), camera.near);
+}
+
 struct Hit {
     // The view depth; negative for none.
     depth: f32,

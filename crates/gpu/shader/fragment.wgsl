@@ -4,9 +4,13 @@
 @fragment
 fn sphere(in: Corner) {
     let pixel = vec2<i32>(floor(in.position.xy));
+    let place = u32(pixel.y) * camera.width + u32(pixel.x);
+    if !may_show(place, nearest_of(in.a.w, in.b.z)) {
+        return;
+    }
     let found = hit(disc_of(in), pixel);
     if found.depth > 0.0 {
-        show(u32(pixel.y) * camera.width + u32(pixel.x), found.depth, in.c.y);
+        show(place, found.depth, in.c.y);
     }
 }
 

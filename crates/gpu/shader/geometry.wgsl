@@ -21,8 +21,7 @@ fn depth_of(depth: f32) -> f32 {
 fn corner(disc: Disc, at: vec2<f32>) -> Corner {
     let size = vec2(f32(camera.width), f32(camera.height));
     let ndc = (at + 0.5) / size * 2.0 - 1.0;
-    let nearest = disc.depth - disc.radius - 1e-6 * (abs(disc.depth) + disc.radius);
-    let depth = depth_of(max(nearest, camera.near));
+    let depth = depth_of(nearest_of(disc.depth, disc.radius));
     return Corner(
         vec4(ndc.x, -ndc.y, min(depth, 1.0), 1.0),
         vec4(disc.fraction, disc.scale, disc.depth),

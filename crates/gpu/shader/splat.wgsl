@@ -10,11 +10,16 @@ fn splat(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
         return;
     }
     let disc = discs[round.capacity - 1u - index];
+    let nearest = nearest_of(disc.depth, disc.radius);
     for (var row = low(disc.rows); row <= high(disc.rows); row++) {
         for (var column = low(disc.columns); column <= high(disc.columns); column++) {
+            let place = row * camera.width + column;
+            if !may_show(place, nearest) {
+                continue;
+            }
             let found = hit(disc, vec2(i32(column), i32(row)));
             if found.depth > 0.0 {
-                show(row * camera.width + column, found.depth, disc.id);
+                show(place, found.depth, disc.id);
             }
         }
     }

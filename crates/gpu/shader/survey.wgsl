@@ -53,6 +53,32 @@ fn look(
     gains[index] = gain(left[index]);
 }
 
+// Whether a brick is not hidden, as `cull` tests it: what is hidden need not even be brought here.
+@compute @workgroup_size(64)
+fn glance(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = number(group, groups, lane);
+    if index >= round.pieces {
+        return;
+    }
+    let run = left[index].run;
+    let nearest = runs[run].nearest;
+    let columns = vec2(low(runs[run].columns), high(runs[run].columns)) / TILE;
+    let rows = vec2(low(runs[run].rows), high(runs[run].rows)) / TILE;
+    gains[index] = 0.0;
+    for (var row = rows.x; row <= rows.y; row++) {
+        for (var column = columns.x; column <= columns.y; column++) {
+            if !(tiles[row * camera.across + column].deepest < nearest) {
+                gains[index] = 1.0;
+                return;
+            }
+        }
+    }
+}
+
 fn gain(brick: Left) -> f32 {
     let nearest = runs[brick.run].nearest;
     let columns = vec2(low(runs[brick.run].columns), high(runs[brick.run].columns));

@@ -11,3 +11,8 @@ fn show(place: u32, depth: f32, id: u32) {
         atomicMax(&visibility[2u * place], ~id);
     }
 }
+
+// Whether what lies no nearer than a depth may be seen at a pixel.
+fn may_show(place: u32, nearest: f32) -> bool {
+    return atomicLoad(&visibility[2u * place + 1u]) <= ~bitcast<u32>(nearest);
+}

@@ -120,7 +120,8 @@ pub struct GpuConfig {
     pub fragment: Option<Fragment>,
     /// Whether what is hidden is left out.
     pub skipping: Skipping,
-    /// How many bytes of records are kept on the GPU: those of 20 bytes each that were drawn last.
+    /// How many bytes of records are kept on the GPU: those of 24 bytes each that were drawn
+    /// last.
     pub record_bytes: u64,
     /// The smallest radius that a sphere is drawn with, in pixels. 0, the default, is exact. With 0.71
     /// each sphere covers at least one pixel's centre, so that none flickers when it moves.

@@ -83,6 +83,26 @@ pub enum Error {
         /// What the device takes.
         limit: u64,
     },
+    /// Ids of which one set does not fit on the device.
+    #[error("shading ids up to {id} needs {bytes} bytes in one piece; the GPU takes {limit}")]
+    TooManyIds {
+        /// The largest id.
+        id: u32,
+        /// What the set needs.
+        bytes: u64,
+        /// What the device takes.
+        limit: u64,
+    },
+    /// A picture whose pixels do not make whole pixels of an image.
+    #[error("a picture of {width} x {height} pixels cannot be averaged over {factor} x {factor}")]
+    Supersample {
+        /// The number of columns.
+        width: u32,
+        /// The number of rows.
+        height: u32,
+        /// How many pixels of the picture make one of the image, along each side.
+        factor: u32,
+    },
     /// A budget in which nothing can be drawn.
     #[error("a budget of {bytes} bytes of GPU memory; it takes at least {least}")]
     Budget {

@@ -7,7 +7,7 @@ adapter has beyond WebGPU is used where it is there. Of a user's own device, nei
 errors nor the callback for its loss is touched.
 */
 
-use crate::Error;
+use crate::{Error, kernel::shader};
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{ErrorFilter, Features, Limits};
 
@@ -23,6 +23,7 @@ pub struct Gpu {
 /// What drawing makes use of where it is there.
 pub(crate) const WANTED: Features = Features::SHADER_INT64
     .union(Features::SHADER_INT64_ATOMIC_MIN_MAX)
+    .union(Features::SHADER_INT64_ATOMIC_ALL_OPS)
     .union(Features::SHADER_EARLY_DEPTH_TEST)
     .union(Features::TIMESTAMP_QUERY)
     .union(Features::PIPELINE_STATISTICS_QUERY)
@@ -143,6 +144,17 @@ impl Gpu {
     /// Whether pixels are written as words of 64 bits.
     pub(crate) fn is_wide(&self) -> bool {
         self.has(Features::SHADER_INT64 | Features::SHADER_INT64_ATOMIC_MIN_MAX)
+    }
+
+    /// How pixels are written.
+    pub(crate) fn visibility(&self) -> &'static str {
+        if !self.is_wide() {
+            shader!("visibility_narrow")
+        } else if self.has(Features::SHADER_INT64_ATOMIC_ALL_OPS) {
+            shader!("visibility_load")
+        } else {
+            shader!("visibility_wide")
+        }
     }
 
     /// The most bytes that a shader sees in one piece.

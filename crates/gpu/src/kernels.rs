@@ -22,6 +22,7 @@ pub(crate) struct Kernels {
     pub(crate) clear_outlook: Kernel,
     pub(crate) look: Kernel,
     pub(crate) count_open: Kernel,
+    pub(crate) glance: Kernel,
 }
 
 const TILES: &str = shader!("camera", "visibility_read", "tiles");
@@ -75,6 +76,7 @@ impl Kernels {
                 clear_outlook: kernel("Kernels::clear_outlook", SURVEY, "clear_outlook"),
                 look: kernel("Kernels::look", SURVEY, "look"),
                 count_open: kernel("Kernels::count_open", SURVEY, "count_open"),
+                glance: kernel("Kernels::glance", SURVEY, "glance"),
             }
         })
     }

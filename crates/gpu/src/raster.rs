@@ -53,7 +53,7 @@ impl Raster {
         }
         let is_wide = gpu.is_wide();
         gpu.guard("pipelines", || {
-            let source = source(setup, fragment, is_wide);
+            let source = source(setup, fragment, gpu.visibility());
             let module = module(gpu, "Raster::module", &source);
             let is_mesh = setup == Setup::Mesh && fragment != Fragment::Point;
             let pipeline = if is_mesh {
@@ -62,7 +62,7 @@ impl Raster {
                 pipeline(gpu, &module, (setup, fragment))
             };
             let layout = pipeline.get_bind_group_layout(0);
-            let splat = (setup == Setup::Compute).then(|| splat(gpu, fragment, is_wide));
+            let splat = (setup == Setup::Compute).then(|| splat(gpu, fragment));
             Self { setup, pipeline, layout, splat, is_wide, is_mesh }
         })
     }
@@ -133,10 +133,8 @@ pub(crate) const fn vertices(setup: Setup, fragment: Fragment) -> (u32, bool) {
     }
 }
 
-pub(crate) fn source(setup: Setup, fragment: Fragment, is_wide: bool) -> String {
+pub(crate) fn source(setup: Setup, fragment: Fragment, visibility: &str) -> String {
     let head = if setup == Setup::Mesh { "enable wgpu_mesh_shader;\n" } else { "" };
-    let visibility =
-        if is_wide { shader!("visibility_wide") } else { shader!("visibility_narrow") };
     let early = match fragment {
         Fragment::SphereEarly => {
             shader!("early").replace("@fragment EARLY", "@fragment @early_depth_test(less_equal)")
@@ -148,20 +146,17 @@ pub(crate) fn source(setup: Setup, fragment: Fragment, is_wide: bool) -> String 
     [head, common, visibility, &early, mesh].concat()
 }
 
-pub(crate) fn splat_source(is_wide: bool) -> String {
-    let common = shader!("camera", "disc", "work", "splat");
-    let visibility =
-        if is_wide { shader!("visibility_wide") } else { shader!("visibility_narrow") };
-    [common, visibility].concat()
+pub(crate) fn splat_source(visibility: &str) -> String {
+    [shader!("camera", "disc", "work", "splat"), visibility].concat()
 }
 
-fn splat(gpu: &Gpu, fragment: Fragment, is_wide: bool) -> Kernel {
+fn splat(gpu: &Gpu, fragment: Fragment) -> Kernel {
     let entry = match fragment {
         Fragment::Point => "splat_point",
         Fragment::Proxy => "splat_proxy",
         _ => "splat",
     };
-    Kernel::new(gpu, "Raster::splat", (&splat_source(is_wide), entry), &[])
+    Kernel::new(gpu, "Raster::splat", (&splat_source(gpu.visibility()), entry), &[])
 }
 
 fn entries(setup: Setup, fragment: Fragment) -> (&'static str, &'static str) {

@@ -10,6 +10,7 @@ use crate::{
     residency::SEGMENT,
     round::{Batch, Bench, IS_COUNTED, IS_FIRST, IS_RECALLED, IS_TESTED, Piece, Stage},
     runs::{Run, is_plain_sphere},
+    shade::Shading,
     store::{Ring, Store},
     survey,
     table::{Known, Table, bound_of_sphere},
@@ -18,29 +19,44 @@ use crate::{
 use puncta_core::{Amount, Camera, Content, Picture, Record, Renderer, View, VisibleBrick};
 use std::ops::Range;
 
-/// The share of the bricks that are drawn before bricks are tested for the first time, and the
-/// smallest number: from then on twice as many each time.
-const FIRST_SHARE: usize = 32;
-const FIRST_MIN: usize = 256;
+/// The share of the bricks that are drawn before those that are left are tested for the first time, and
+/// the smallest number.
+const FIRST_SHARE: usize = 128;
+const FIRST_MIN: usize = 64;
+
+/// The share of the bricks that are left by then, of which more than that is drawn at once later: what
+/// is hidden is neither drawn nor brought, and testing takes few turns.
+const LATER_SHARE: usize = 64;
 
 /// Draws spheres exactly, through wgpu.
+///
+/// At each pixel the picture shows what [`Camera`] defines: the nearest point where its ray enters a
+/// sphere, at a view depth of at least [`View::near`]; of equal depths the one with the lower
+/// [`puncta_core::Scene::id`]. It does not depend on the order of drawing, on [`Setup`], or on what
+/// was left out because it is hidden.
+///
+/// A picture is of one content: drawing another one into it is [`Error::OtherContent`].
+///
+/// # Examples
 ///
 /// See the [crate's page](crate).
 #[derive(Debug)]
 pub struct GpuRenderer {
     pub(crate) gpu: Gpu,
-    config: GpuConfig,
+    pub(crate) config: GpuConfig,
     setup: Setup,
     fragment: Fragment,
     pub(crate) kernels: Kernels,
     pub(crate) raster: Raster,
     pub(crate) bench: Bench,
-    ring: Ring,
+    pub(crate) ring: Ring,
     pub(crate) store: Option<Store>,
     pub(crate) frame: Option<Frame>,
     /// The picture before, if it may be recalled.
     last: Option<Frame>,
-    round: u64,
+    pub(crate) round: u64,
+    /// What shading needs, once something was shaded.
+    pub(crate) shading: Option<Shading>,
 }
 
 /// A picture that is being drawn.
@@ -157,16 +173,21 @@ impl<R: Record> Renderer<R> for GpuRenderer {
     fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
         let indices = self.prepare(content, bricks)?;
         self.clear_counts()?;
-        let (mut rest, mut close) = (indices.as_slice(), Amount::default());
-        let mut count = match self.config.skipping {
-            Skipping::Hidden => (rest.len() / FIRST_SHARE).max(FIRST_MIN),
-            Skipping::Nothing => usize::MAX,
-        };
+        let mut close = Amount::default();
+        let (mut rest, first) = (indices, bricks.len().div_ceil(FIRST_SHARE).max(FIRST_MIN));
         while !rest.is_empty() {
-            let (now, later) = rest.split_at(count.min(rest.len()));
-            close += self.draw_round(content, now)?;
+            let count = match self.config.skipping {
+                Skipping::Nothing => rest.len(),
+                Skipping::Hidden => {
+                    if self.frame.as_ref().is_some_and(|frame| frame.has_drawn) {
+                        rest = survey::glance(self, &rest)?;
+                    }
+                    first.max(rest.len() / LATER_SHARE).min(rest.len())
+                }
+            };
+            let later = rest.split_off(count);
+            close += self.draw_round(content, &rest)?;
             rest = later;
-            count = count.saturating_mul(2);
         }
         let counted = self.bench.counted(&self.gpu)?;
         close += Amount { bricks: counted.bricks.into(), records: counted.records.into() };
@@ -230,6 +251,7 @@ impl GpuRenderer {
             frame: None,
             last: None,
             round: 0,
+            shading: None,
         })
     }
 
@@ -274,7 +296,7 @@ impl GpuRenderer {
     }
 
     /// Checks what is to be drawn, and gets ready for it. Returns which bricks these are.
-    fn prepare<R: Record>(
+    pub(crate) fn prepare<R: Record>(
         &mut self,
         content: &Content<'_, R>,
         bricks: &[VisibleBrick],
@@ -365,7 +387,7 @@ impl GpuRenderer {
         Ok(())
     }
 
-    fn take(&mut self, segment: u32, batch: &mut Batch) -> Option<u32> {
+    pub(crate) fn take(&mut self, segment: u32, batch: &mut Batch) -> Option<u32> {
         self.store.as_mut().and_then(|store| store.take(segment, self.round, &mut batch.missing))
     }
 

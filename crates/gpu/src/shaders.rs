@@ -4,10 +4,12 @@ is said, their structs lie in memory as those of Rust do, and every pipeline can
 */
 
 use crate::{
-    Error, Fragment, Gpu, GpuConfig, GpuRenderer, Setup,
+    Error, Fragment, Gpu, GpuConfig, GpuRenderer, Setup, compositor,
     gpu::{WANTED, experimental},
+    kernel::shader,
     kernels, raster,
     round::{CHUNK_BYTES, DISC_BYTES},
+    shade,
 };
 use naga::{
     Module,
@@ -64,34 +66,47 @@ pub(crate) use assert_same_layout;
 
 /// All that any of the shaders needs.
 pub(crate) fn everything() -> Capabilities {
-    WIDE | Capabilities::EARLY_DEPTH_TEST | Capabilities::MESH_SHADER
+    WIDE | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS
+        | Capabilities::EARLY_DEPTH_TEST
+        | Capabilities::MESH_SHADER
 }
 
 const WIDE: Capabilities =
     Capabilities::SHADER_INT64.union(Capabilities::SHADER_INT64_ATOMIC_MIN_MAX);
 
+/// Every module that is the same everywhere.
+fn core_sources() -> Vec<(&'static str, &'static str)> {
+    let compositor = ("compositor", compositor::SOURCE);
+    kernels::SOURCES.into_iter().chain(shade::SOURCES).chain([compositor]).collect()
+}
+
 /// Every module of drawing: its name, its source and what it needs beyond core WebGPU.
 fn drawing() -> Vec<(String, String, Capabilities)> {
     let mut all = Vec::new();
-    for is_wide in [false, true] {
-        let words = if is_wide { WIDE } else { Capabilities::empty() };
+    // All operations include the two.
+    let load = Capabilities::SHADER_INT64 | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS;
+    for (word, visibility, words) in [
+        ("narrow", shader!("visibility_narrow"), Capabilities::empty()),
+        ("wide", shader!("visibility_wide"), WIDE),
+        ("load", shader!("visibility_load"), load),
+    ] {
         for setup in Setup::ALL {
             for fragment in Fragment::ALL {
                 let mut needs = words;
                 needs.set(Capabilities::MESH_SHADER, setup == Setup::Mesh);
                 needs.set(Capabilities::EARLY_DEPTH_TEST, fragment == Fragment::SphereEarly);
-                let name = format!("{setup} {fragment} {is_wide}");
-                all.push((name, raster::source(setup, fragment, is_wide), needs));
+                let name = format!("{setup} {fragment} {word}");
+                all.push((name, raster::source(setup, fragment, visibility), needs));
             }
         }
-        all.push((format!("splat {is_wide}"), raster::splat_source(is_wide), words));
+        all.push((format!("splat {word}"), raster::splat_source(visibility), words));
     }
     all
 }
 
 #[test]
 fn kernels_are_core_webgpu() {
-    for (name, source) in kernels::SOURCES {
+    for (name, source) in core_sources() {
         module(name, source, Capabilities::empty()).unwrap_or_else(|what| panic!("{what}"));
     }
 }
@@ -110,10 +125,10 @@ fn drawing_needs_what_is_said() {
 /// A struct that several modules have is the same one in all of them.
 #[test]
 fn structs_are_the_same_everywhere() {
-    let kernels = kernels::SOURCES.map(|(name, source)| (name.to_owned(), source.to_owned()));
+    let kernels = core_sources();
+    let kernels = kernels.into_iter().map(|(name, source)| (name.to_owned(), source.to_owned()));
     let drawing = drawing().into_iter().map(|(name, source, _)| (name, source));
     let modules: Vec<(String, Module)> = kernels
-        .into_iter()
         .chain(drawing)
         .map(|(name, source)| (name.clone(), module(&name, &source, everything()).unwrap()))
         .collect();
@@ -128,6 +143,8 @@ fn structs_are_the_same_everywhere() {
         ("Disc", Some(DISC_BYTES)),
         ("Chunk", Some(CHUNK_BYTES)),
         ("Tile", Some(8)),
+        ("Shade", None),
+        ("Entry", None),
     ];
     for (name, size) in sizes {
         let having = modules.iter().filter(|(_, module)| is_there(module, name));
@@ -163,7 +180,9 @@ fn noop(required_features: wgpu::Features) -> Gpu {
 
 #[test]
 fn every_pipeline_can_be_built() {
-    for (features, is_full) in [(wgpu::Features::empty(), false), (WANTED, true)] {
+    let without_loads = WANTED - wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS;
+    let none = wgpu::Features::empty();
+    for (features, is_full) in [(none, false), (without_loads, true), (WANTED, true)] {
         let gpu = noop(features);
         assert_eq!(gpu.is_wide(), is_full);
         for setup in Setup::ALL {

@@ -10,6 +10,7 @@ the two.
 use crate::{
     Error, Gpu,
     kernel::{Work, buffer, storage},
+    paint::Coat,
     residency::{Place, Residency, SEGMENT},
 };
 use puncta_core::{Record, Scene};
@@ -18,8 +19,8 @@ use std::{
     sync::mpsc::{self, Receiver, Sender},
 };
 
-/// The bytes of a record on the GPU: a sphere and an id.
-pub(crate) const RECORD_BYTES: u64 = 20;
+/// The bytes of a record on the GPU: a sphere, an id, and a color, for which there is always room.
+pub(crate) const RECORD_BYTES: u64 = 24;
 
 /// How many segments a staging buffer holds: 4 MB.
 pub(crate) const STAGED: usize = 205;
@@ -35,6 +36,8 @@ const ID_BYTES: u64 = 4 * SEGMENT as u64;
 pub(crate) struct Page {
     pub(crate) spheres: wgpu::Buffer,
     pub(crate) ids: wgpu::Buffer,
+    /// Once something was shaded that needs them.
+    pub(crate) colors: Option<wgpu::Buffer>,
 }
 
 /// What is on the GPU of a scene.
@@ -43,6 +46,7 @@ pub(crate) struct Store {
     /// The versions of the columns that it was made of, and the number of records.
     key: (u64, u64, usize),
     pub(crate) residency: Residency,
+    pub(crate) coat: Coat,
     pages: Vec<Option<Page>>,
     /// How many slots a page has, and how many all have.
     page_slots: u32,
@@ -93,6 +97,7 @@ impl Store {
         Ok(Self {
             key: key(scene),
             residency: Residency::new(segments, slots as usize),
+            coat: Coat::default(),
             pages: vec![None; slots.div_ceil(page_slots) as usize],
             page_slots,
             slots,
@@ -107,7 +112,8 @@ impl Store {
 
     /// The bytes of all pages that were made.
     pub(crate) fn bytes(&self) -> u64 {
-        let size = |page: &Page| page.spheres.size() + page.ids.size();
+        let colors = |page: &Page| page.colors.as_ref().map_or(0, wgpu::Buffer::size);
+        let size = |page: &Page| page.spheres.size() + page.ids.size() + colors(page);
         self.pages.iter().flatten().map(size).sum()
     }
 
@@ -131,9 +137,23 @@ impl Store {
         let made = Page {
             spheres: storage(gpu, "Page::spheres", slots * SPHERE_BYTES)?,
             ids: storage(gpu, "Page::ids", slots * ID_BYTES)?,
+            colors: None,
         };
         self.pages[page] = Some(made.clone());
         Ok(made)
+    }
+
+    /// The colors of a page, which has room for them from now on.
+    pub(crate) fn colors(&mut self, gpu: &Gpu, page: usize) -> Result<wgpu::Buffer, Error> {
+        let known = self.page(gpu, page)?;
+        if let Some(colors) = known.colors {
+            return Ok(colors);
+        }
+        let colors = storage(gpu, "Page::colors", known.ids.size())?;
+        if let Some(Some(page)) = self.pages.get_mut(page) {
+            page.colors = Some(colors.clone());
+        }
+        Ok(colors)
     }
 
     /// Gives a segment a slot during a round; what is missing is noted.
@@ -146,6 +166,7 @@ impl Store {
         match self.residency.take(segment, round) {
             Place::Resident(slot) => Some(slot),
             Place::Missing(slot) => {
+                self.coat.wipe(slot);
                 missing.push((segment, slot));
                 Some(slot)
             }
@@ -166,6 +187,7 @@ impl Store {
         let result = self.stream(gpu, ring, (scene, missing));
         if result.is_err() {
             self.residency.drop_all();
+            self.coat = Coat::default();
             *ring = Ring::default();
         }
         result

@@ -83,6 +83,42 @@ pub(crate) fn survey(
     Ok(counts.open.into())
 }
 
+/// Keeps those of some bricks that are not hidden by what is drawn.
+pub(crate) fn glance(renderer: &mut GpuRenderer, bricks: &[u32]) -> Result<Vec<u32>, Error> {
+    let GpuRenderer { gpu, kernels, raster, bench, frame, .. } = renderer;
+    let frame = frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
+    let run = |&brick: &u32| match frame.table.known(brick) {
+        Known::Plain(run) | Known::Close(run) => Some((brick, Left { run, far: 0.0 })),
+        Known::Unknown | Known::Outside => None,
+    };
+    let (bricks, left): (Vec<u32>, Vec<Left>) = bricks.iter().filter_map(run).unzip();
+    let runs = frame.table.buffer(gpu)?;
+    let list = bench.pool.filled(gpu, "survey::left", &left)?;
+    let gains = bench.pool.storage(gpu, "survey::gains", left.len() as u64 * 4)?;
+    let count = u32::try_from(left.len()).unwrap_or(u32::MAX);
+    let data = RoundData { pieces: count, capacity: 0, small: 0, pass_of_two: 0 };
+    let skipping = Skipping::Hidden;
+    let mut stage = Stage { gpu, kernels, raster, bench, frame, skipping, seen: None };
+    gpu.guard("a glance", || {
+        let mut work = Work::new(gpu, "glance");
+        stage.freshen(&mut work);
+        let round = stage.bench.write_round(gpu, data);
+        let bindings = [
+            (0, stage.frame.target.camera.as_entire_binding()),
+            (1, runs.as_entire_binding()),
+            (2, round.as_entire_binding()),
+            (3, list.as_entire_binding()),
+            (4, gains.as_entire_binding()),
+            (8, stage.frame.target.tiles.as_entire_binding()),
+        ];
+        kernels.glance.run(&mut work, &bindings, count);
+        work.submit();
+    })?;
+    let bytes = read(gpu, &mut bench.pool, &[(&gains, 0..left.len() as u64 * 4)])?;
+    let is_open = words(&bytes).into_iter().map(|gain| gain != 0);
+    Ok(bricks.into_iter().zip(is_open).filter(|(_, is_open)| *is_open).map(|(b, _)| b).collect())
+}
+
 /// Which pixels are open since the last survey.
 pub(crate) fn open_pixels(renderer: &mut GpuRenderer) -> Result<Vec<bool>, Error> {
     let GpuRenderer { gpu, bench, frame, .. } = renderer;

@@ -1,0 +1,537 @@
+/*!
+Shading on the GPU: from the visibility buffer to an image, of which nothing is read back.
+
+The visibility buffer holds ids, and ids say nothing of where a record lies. So shading goes over the
+records of the bricks that were drawn once more, and looks for those that are seen:
+
+1. The ids in the picture become a set, a bit for each (`shade_seen.wgsl`).
+2. Each id of the set gets a number: with the bits that are set before its word, and those below it,
+   numbers are without gaps, and no list has to be sorted.
+3. What shading needs of each record whose bit is set goes into a table, at that number
+   (`shade_table.wgsl`): its place, to tell how much the sphere faces the ray, and its color. Records of
+   close bricks are listed by the CPU (`shade_list.rs`).
+4. Each pixel of the image finds the numbers of its ids, and averages what they show (`shade.wgsl`).
+
+No geometry is drawn, and no depth is compared: whatever has shown an id, its pixel gets a color. There
+are at most as many numbers as pixels. So the table is never larger than what can be bound: large pictures
+are made in bands of rows. Records may have left the GPU since they were drawn; they are brought again,
+in groups, as they are for drawing.
+*/
+
+use crate::{
+    Error, Gpu, GpuRenderer, Shaded,
+    kernel::{Kernel, Work, shader, storage, uniform},
+    paint::Paint,
+    residency::SEGMENT,
+    round::{Batch, CHUNK, CHUNKS_MAX, IS_RECALLED, Piece, RoundData},
+    shade_list::{Entry, list},
+    store::Store,
+    table::Known,
+};
+use bytemuck::{Pod, Zeroable};
+use puncta_core::{Background, Content, Image, Record, View};
+use std::ops::Range;
+
+/// How to make an image of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadeConfig {
+    /// What is seen where there is no record.
+    pub background: Background,
+    /// The share of light that reaches a surface from everywhere, 0 to 1.
+    pub ambient: f32,
+    /// How many pixels of the picture make one of the image, along each side.
+    pub supersample: u32,
+}
+
+impl Default for ShadeConfig {
+    fn default() -> Self {
+        Self { background: Background::default(), ambient: 0.18, supersample: 1 }
+    }
+}
+
+/// The most pixels that are shaded at once: a table of 128 MiB.
+const BAND_PIXELS: u64 = 1 << 22;
+
+/// The most records that are listed at once: 8 MiB.
+const LISTED_MAX: u64 = 1 << 18;
+
+const ENTRY_BYTES: u64 = size_of::<Entry>() as u64;
+
+const SEEN: &str = shader!("camera", "visibility_read", "shade_common", "shade_seen");
+const TABLE: &str = shader!("camera", "disc", "place", "shade_common", "shade_table");
+const SHADE: &str = shader!("camera", "disc", "visibility_read", "shade_common", "shade");
+
+/// What shading needs, from one image to the next.
+#[derive(Debug)]
+pub(crate) struct Shading {
+    mark: Kernel,
+    number: Kernel,
+    enter: Kernel,
+    enter_listed: Kernel,
+    shade: Kernel,
+    data: wgpu::Buffer,
+    listed: wgpu::Buffer,
+    total: wgpu::Buffer,
+    shaded: Shaded,
+}
+
+/// `Shade` of `shade_common.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct ShadeData {
+    size: [u32; 2],
+    factor: u32,
+    ambient: f32,
+    first_row: u32,
+    rows: u32,
+    per_record: u32,
+    has_background: u32,
+    top: [f32; 3],
+    words: u32,
+    bottom: [f32; 3],
+    spare: u32,
+    decode: [f32; 256],
+}
+
+/// The buffers of a band.
+#[derive(Debug)]
+struct Tables {
+    seen: wgpu::Buffer,
+    bases: wgpu::Buffer,
+    table: wgpu::Buffer,
+    /// The colors of pages, or the only one.
+    uniform: Option<wgpu::Buffer>,
+}
+
+/// All of these, to be tested.
+#[cfg(test)]
+pub(crate) const SOURCES: [(&str, &str); 3] = [("seen", SEEN), ("table", TABLE), ("shade", SHADE)];
+
+impl GpuRenderer {
+    /// Makes an image of what was drawn so far, on the GPU. It equals what the CPU's shading makes of the
+    /// finished picture.
+    ///
+    /// Colors of records are brought to the GPU for what was drawn, once. Nothing is read back, and
+    /// nothing waits: what is submitted to the queue after this sees the image.
+    ///
+    /// # Errors
+    ///
+    /// When no picture was begun, it shows another content, its sides are no multiples of
+    /// [`ShadeConfig::supersample`], or the device fails.
+    pub fn shade<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        config: &ShadeConfig,
+        paint: &Paint<'_>,
+    ) -> Result<&Shaded, Error> {
+        self.prepare(content, &[])?;
+        let frame = self.frame.as_ref().ok_or(puncta_core::Error::NotBegun)?;
+        let data = ShadeData::new(&frame.target.view, config, paint)?;
+        let shading = match self.shading.take() {
+            Some(known) if known.shaded.size() == data.size => known,
+            Some(known) => Shading { shaded: Shaded::new(&self.gpu, data.size)?, ..known },
+            None => Shading::new(&self.gpu, data.size)?,
+        };
+        let result = self.shade_all(content, (&shading, data), paint);
+        let shading = self.shading.insert(shading);
+        result.map(|()| &shading.shaded)
+    }
+
+    /// The same, read back.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::shade`].
+    pub fn shade_image<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        config: &ShadeConfig,
+        paint: &Paint<'_>,
+    ) -> Result<Image, Error> {
+        let shaded = self.shade(content, config, paint)?.clone();
+        shaded.read(&self.gpu, &mut self.bench.pool)
+    }
+
+    fn shade_all<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        (shading, data): (&Shading, ShadeData),
+        paint: &Paint<'_>,
+    ) -> Result<(), Error> {
+        if let (Paint::Each { key, .. }, Some(store)) = (paint, &mut self.store) {
+            store.coat.begin(*key);
+        }
+        let id = self.store.as_ref().map_or(0, |store| store.id_max);
+        let (words, limit) = (id / 32 + 1, self.gpu.binding_bytes_max());
+        let bytes = u64::from(words) * 4;
+        if bytes > limit {
+            return Err(Error::TooManyIds { id, bytes, limit });
+        }
+        let row_pixels = u64::from(data.size[0] * data.factor * data.factor);
+        let rows_max = (BAND_PIXELS.min(limit / ENTRY_BYTES) / row_pixels).max(1);
+        let rows_max = u32::try_from(rows_max).unwrap_or(u32::MAX).min(data.size[1]);
+        let entries = (u64::from(rows_max) * row_pixels).min(content.scene.records.len() as u64);
+        let pool = &mut self.bench.pool;
+        let uniform = match paint {
+            Paint::Uniform(_) => {
+                Some(pool.filled(&self.gpu, "Shade::color", &[paint.word(0); 4])?)
+            }
+            Paint::Each { .. } => None,
+        };
+        let tables = Tables {
+            seen: pool.storage(&self.gpu, "Shade::seen", bytes)?,
+            bases: pool.storage(&self.gpu, "Shade::bases", bytes)?,
+            table: pool.storage(&self.gpu, "Shade::table", entries * ENTRY_BYTES)?,
+            uniform,
+        };
+        for first_row in (0..data.size[1]).step_by(rows_max as usize) {
+            let rows = rows_max.min(data.size[1] - first_row);
+            let data = ShadeData { first_row, rows, words, ..data };
+            self.shade_band(content, (shading, &data, &tables), paint)?;
+        }
+        Ok(())
+    }
+
+    fn shade_band<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        (shading, data, tables): (&Shading, &ShadeData, &Tables),
+        paint: &Paint<'_>,
+    ) -> Result<(), Error> {
+        shading.begin(self, data, tables)?;
+        let mut batch = Batch::new(self.store.as_ref().map_or(0, Store::pages));
+        let (mut close, mut unpainted) = (Vec::new(), Vec::new());
+        let bricks = self.frame.as_ref().map_or(0, |frame| frame.touched.len());
+        for index in 0..u32::try_from(bricks).unwrap_or(u32::MAX) {
+            let Some(frame) = self.frame.as_ref().filter(|f| f.touched[index as usize]) else {
+                continue;
+            };
+            match frame.table.known(index) {
+                Known::Unknown | Known::Outside => {}
+                Known::Close(_) => close.push(index),
+                Known::Plain(run) => {
+                    let mut rest = content.bricks[index as usize].records.clone();
+                    while !rest.is_empty() {
+                        let is_new = (paint, &mut unpainted);
+                        rest = self.collect((run, rest), &mut batch, is_new)?;
+                        if !rest.is_empty() {
+                            self.enter(
+                                content,
+                                (shading, tables, paint),
+                                (&mut batch, &mut unpainted),
+                            )?;
+                        }
+                    }
+                }
+            }
+        }
+        self.enter(content, (shading, tables, paint), (&mut batch, &mut unpainted))?;
+        self.enter_close(content, (shading, tables, paint), &close)?;
+        shading.end(self, data, tables)
+    }
+
+    /// Adds records of a brick to a batch; returns those that are left when it is full.
+    fn collect(
+        &mut self,
+        (run, records): (u32, Range<u32>),
+        batch: &mut Batch,
+        (paint, unpainted): (&Paint<'_>, &mut Vec<(u32, u32)>),
+    ) -> Result<Range<u32>, Error> {
+        let mut first = records.start;
+        while first < records.end {
+            let segment = first / SEGMENT;
+            let last = records.end.min(segment.saturating_add(1).saturating_mul(SEGMENT));
+            let count = last - first;
+            if batch.chunks + count.div_ceil(CHUNK) > CHUNKS_MAX {
+                break;
+            }
+            let Some(slot) = self.take(segment, batch) else { break };
+            let Some(store) = &mut self.store else { break };
+            if matches!(paint, Paint::Each { .. }) && !store.coat.paint(slot) {
+                unpainted.push((segment, slot));
+            }
+            let (page, start) = store.address(slot);
+            let slot = start + first % SEGMENT;
+            batch.push(page, Piece { run, slot, count, flags: IS_RECALLED });
+            first = last;
+        }
+        if first == records.start && batch.records == 0 && !records.is_empty() {
+            let least = u64::from(SEGMENT) * crate::store::RECORD_BYTES;
+            return Err(Error::Budget { bytes: self.config.record_bytes, least });
+        }
+        Ok(first..records.end)
+    }
+
+    /// Enters those records of a batch that are seen into the table, and empties it.
+    fn enter<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        (shading, tables, paint): (&Shading, &Tables, &Paint<'_>),
+        (batch, unpainted): (&mut Batch, &mut Vec<(u32, u32)>),
+    ) -> Result<(), Error> {
+        self.round += 1;
+        let records = u32::try_from(content.scene.records.len()).unwrap_or(u32::MAX);
+        let Some(store) = &mut self.store else { return Ok(()) };
+        store.bring(&self.gpu, &mut self.ring, (content.scene, &batch.missing))?;
+        store.paint(&self.gpu, (paint, records), unpainted)?;
+        unpainted.clear();
+        for (page, pieces) in batch.pieces.iter().enumerate().filter(|(_, p)| !p.is_empty()) {
+            shading.enter_page(self, tables, (page, pieces))?;
+        }
+        batch.clear();
+        Ok(())
+    }
+
+    /// Enters the records of close bricks that are seen.
+    fn enter_close<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        (shading, tables, paint): (&Shading, &Tables, &Paint<'_>),
+        bricks: &[u32],
+    ) -> Result<(), Error> {
+        let mut rest = bricks;
+        while let Some(camera) = self.frame.as_ref().and_then(|frame| frame.camera.as_ref())
+            && !rest.is_empty()
+        {
+            let mut records = 0;
+            let is_room = |&&brick: &&u32| {
+                records += content.bricks[brick as usize].records.len() as u64;
+                records <= LISTED_MAX
+            };
+            let count = rest.iter().take_while(is_room).count().max(1);
+            let (now, later) = rest.split_at(count);
+            rest = later;
+            let (ids, entries) = list(content, (camera, self.config.radius_min_pixels), paint, now);
+            // A brick may be larger than the list.
+            let parts = ids.chunks(1 << 18).zip(entries.chunks(1 << 18));
+            for (ids, entries) in parts {
+                shading.enter_listed(self, tables, (ids, entries))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Shading {
+    fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
+        let shaded = Shaded::new(gpu, size)?;
+        let data = uniform(gpu, "Shading::data", size_of::<ShadeData>() as u64)?;
+        let listed = uniform(gpu, "Shading::listed", 16)?;
+        let total = storage(gpu, "Shading::total", 16)?;
+        gpu.guard("pipelines", || {
+            let kernel = |label, source, entry| Kernel::new(gpu, label, (source, entry), &[]);
+            Self {
+                mark: kernel("Shading::mark", SEEN, "mark_band"),
+                number: kernel("Shading::number", SEEN, "number_ids"),
+                enter: kernel("Shading::enter", TABLE, "enter"),
+                enter_listed: kernel("Shading::enter_listed", TABLE, "enter_listed"),
+                shade: kernel("Shading::shade", SHADE, "shade_band"),
+                data,
+                listed,
+                total,
+                shaded,
+            }
+        })
+    }
+
+    /// Finds which ids are seen in a band, and numbers them.
+    fn begin(
+        &self,
+        renderer: &GpuRenderer,
+        data: &ShadeData,
+        tables: &Tables,
+    ) -> Result<(), Error> {
+        let GpuRenderer { gpu, frame: Some(frame), .. } = renderer else { return Ok(()) };
+        gpu.guard("what is seen", || {
+            gpu.queue.write_buffer(&self.data, 0, bytemuck::bytes_of(data));
+            let mut work = Work::new(gpu, "Shading::begin");
+            work.encoder.clear_buffer(&tables.seen, 0, Some(u64::from(data.words) * 4));
+            work.encoder.clear_buffer(&self.total, 0, None);
+            let bindings = [
+                (0, frame.target.camera.as_entire_binding()),
+                (2, self.data.as_entire_binding()),
+                (9, frame.target.visibility.as_entire_binding()),
+                (10, tables.seen.as_entire_binding()),
+            ];
+            let items = data.rows * data.size[0] * data.factor * data.factor;
+            self.mark.run(&mut work, &bindings, items);
+            let bindings = [
+                (2, self.data.as_entire_binding()),
+                (7, self.total.as_entire_binding()),
+                (10, tables.seen.as_entire_binding()),
+                (13, tables.bases.as_entire_binding()),
+            ];
+            self.number.run(&mut work, &bindings, data.words);
+            work.submit();
+        })
+    }
+
+    /// Enters those records of pieces that are seen, of bricks that were drawn.
+    fn enter_page(
+        &self,
+        renderer: &mut GpuRenderer,
+        tables: &Tables,
+        (page, pieces): (usize, &[Piece]),
+    ) -> Result<(), Error> {
+        let GpuRenderer { gpu, kernels, bench, store, frame, .. } = renderer;
+        let (Some(store), Some(frame)) = (store, frame) else { return Ok(()) };
+        let colors = match &tables.uniform {
+            Some(only) => only.clone(),
+            None => store.colors(gpu, page)?,
+        };
+        let page = store.page(gpu, page)?;
+        let runs = frame.table.buffer(gpu)?;
+        let chunks: u32 = pieces.iter().map(|piece| piece.count.div_ceil(CHUNK)).sum();
+        let pool = &mut bench.pool;
+        let list = pool.filled(gpu, "Round::pieces", pieces)?;
+        let cut = pool.storage(gpu, "Round::chunks", u64::from(chunks) * 8)?;
+        // Culling notes what it lets pass, which is of no use here.
+        let passed = pool.storage(gpu, "Shading::passed", frame.drawn.size())?;
+        let count = u32::try_from(pieces.len()).unwrap_or(u32::MAX);
+        let round = RoundData { pieces: count, capacity: 0, small: 0, pass_of_two: 0 };
+        let round = bench.write_round(gpu, round);
+        gpu.guard("a table of records", || {
+            let mut work = Work::new(gpu, "Shading::enter_page");
+            work.encoder.clear_buffer(&bench.counts, 0, Some(12));
+            let bindings = [
+                (0, frame.target.camera.as_entire_binding()),
+                (1, runs.as_entire_binding()),
+                (2, round.as_entire_binding()),
+                (3, list.as_entire_binding()),
+                (5, cut.as_entire_binding()),
+                (7, bench.counts.as_entire_binding()),
+                (8, frame.target.tiles.as_entire_binding()),
+                (10, passed.as_entire_binding()),
+                (12, frame.drawn.as_entire_binding()),
+            ];
+            kernels.cull.run(&mut work, &bindings, count);
+            let counted =
+                [(7, bench.counts.as_entire_binding()), (11, bench.arguments.as_entire_binding())];
+            kernels.over_chunks.run_once(&mut work, &counted);
+            let bindings = [
+                (0, frame.target.camera.as_entire_binding()),
+                (1, runs.as_entire_binding()),
+                (2, self.data.as_entire_binding()),
+                (3, page.spheres.as_entire_binding()),
+                (4, page.ids.as_entire_binding()),
+                (5, cut.as_entire_binding()),
+                (10, tables.seen.as_entire_binding()),
+                (13, tables.bases.as_entire_binding()),
+                (14, colors.as_entire_binding()),
+                (15, tables.table.as_entire_binding()),
+            ];
+            self.enter.run_indirect(&mut work, &bindings, (&bench.arguments, 0));
+            work.submit();
+        })
+    }
+
+    /// Enters those of listed records that are seen.
+    fn enter_listed(
+        &self,
+        renderer: &mut GpuRenderer,
+        tables: &Tables,
+        (ids, entries): (&[u32], &[Entry]),
+    ) -> Result<(), Error> {
+        let GpuRenderer { gpu, bench, .. } = renderer;
+        let count = u32::try_from(ids.len()).unwrap_or(u32::MAX);
+        let ids = bench.pool.filled(gpu, "Shading::ids", ids)?;
+        let entries = bench.pool.filled(gpu, "Shading::entries", entries)?;
+        gpu.guard("a list of records", || {
+            gpu.queue.write_buffer(&self.listed, 0, bytemuck::bytes_of(&[count; 4]));
+            let mut work = Work::new(gpu, "Shading::enter_listed");
+            let bindings = [
+                (4, ids.as_entire_binding()),
+                (6, entries.as_entire_binding()),
+                (7, self.listed.as_entire_binding()),
+                (10, tables.seen.as_entire_binding()),
+                (13, tables.bases.as_entire_binding()),
+                (15, tables.table.as_entire_binding()),
+            ];
+            self.enter_listed.run(&mut work, &bindings, count);
+            work.submit();
+        })
+    }
+
+    /// Makes a band of the image.
+    fn end(&self, renderer: &GpuRenderer, data: &ShadeData, tables: &Tables) -> Result<(), Error> {
+        let GpuRenderer { gpu, frame: Some(frame), .. } = renderer else { return Ok(()) };
+        gpu.guard("an image", || {
+            let mut work = Work::new(gpu, "Shading::end");
+            let bindings = [
+                (0, frame.target.camera.as_entire_binding()),
+                (2, self.data.as_entire_binding()),
+                (9, frame.target.visibility.as_entire_binding()),
+                (10, tables.seen.as_entire_binding()),
+                (13, tables.bases.as_entire_binding()),
+                (15, tables.table.as_entire_binding()),
+                (16, wgpu::BindingResource::TextureView(self.shaded.color())),
+                (17, wgpu::BindingResource::TextureView(self.shaded.depth())),
+            ];
+            self.shade.run(&mut work, &bindings, data.rows * data.size[0]);
+            work.submit();
+        })
+    }
+}
+
+impl ShadeData {
+    fn new(view: &View, config: &ShadeConfig, paint: &Paint<'_>) -> Result<Self, Error> {
+        let factor = config.supersample.max(1);
+        let (width, height) = (view.width(), view.height());
+        if !width.is_multiple_of(factor) || !height.is_multiple_of(factor) {
+            return Err(Error::Supersample { width, height, factor });
+        }
+        let (ends, has_background) = match config.background {
+            Background::Solid(color) => ([color; 2], 1),
+            Background::Gradient(top, bottom) => ([top, bottom], 1),
+            Background::Transparent => ([[0; 3]; 2], 0),
+        };
+        let [top, bottom] = ends.map(|color| color.map(f32::from));
+        Ok(Self {
+            size: [width / factor, height / factor],
+            factor,
+            ambient: config.ambient,
+            first_row: 0,
+            rows: 0,
+            per_record: u32::from(matches!(paint, Paint::Each { .. })),
+            has_background,
+            top,
+            words: 0,
+            bottom,
+            spare: 0,
+            decode: std::array::from_fn(|byte| decode(byte as f32 / 255.0)),
+        })
+    }
+}
+
+/// From sRGB to light.
+fn decode(srgb: f32) -> f32 {
+    if srgb <= 0.040_45 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shaders::assert_same_layout;
+
+    #[test]
+    fn structs_are_those_of_the_shaders() {
+        assert_same_layout!(
+            SHADE,
+            "Shade",
+            ShadeData {
+                size,
+                factor,
+                ambient,
+                first_row,
+                rows,
+                per_record,
+                has_background,
+                top,
+                words,
+                bottom,
+                spare,
+                decode,
+            }
+        );
+    }
+}

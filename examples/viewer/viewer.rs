@@ -1,0 +1,5 @@
+//! The viewer: see the library of this package.
+
+fn main() -> std::process::ExitCode {
+    puncta_viewer::main()
+}
