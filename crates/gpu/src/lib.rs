@@ -91,6 +91,8 @@ mod shade;
 mod shade_list;
 mod shade_pass;
 mod shaded;
+#[cfg(test)]
+mod shaders;
 mod store;
 mod survey;
 mod table;

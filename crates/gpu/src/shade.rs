@@ -75,6 +75,10 @@ pub(crate) struct ShadeData {
     pub(crate) decode: [f32; 256],
 }
 
+/// All of these, to be tested.
+#[cfg(test)]
+pub(crate) const SOURCES: [(&str, &str); 3] = [("seen", SEEN), ("table", TABLE), ("shade", SHADE)];
+
 impl GpuRenderer {
     /// Makes an image of what was drawn so far, on the GPU. It equals what the CPU's shading makes of the
     /// finished picture.
@@ -313,4 +317,32 @@ impl ShadeData {
 /// From sRGB to light.
 fn decode(srgb: f32) -> f32 {
     if srgb <= 0.040_45 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shaders::assert_same_layout;
+
+    #[test]
+    fn structs_are_those_of_the_shaders() {
+        assert_same_layout!(
+            SHADE,
+            "Shade",
+            ShadeData {
+                size,
+                factor,
+                ambient,
+                first_row,
+                rows,
+                per_record,
+                has_background,
+                top,
+                words,
+                bottom,
+                spare,
+                decode,
+            }
+        );
+    }
 }
