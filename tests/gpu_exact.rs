@@ -1,6 +1,7 @@
 //! Promise 1 on the GPU: every set-up gives the same picture, on all that WebGPU has as on all that
 //! the adapter has; it is that of the reference in `f64` and that of the renderer on the CPU.
 
+#![cfg(feature = "gpu")]
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
@@ -27,7 +28,7 @@ mod naive;
 mod scenes;
 
 /// What the renderer on the GPU promises: see `naive::Pixels`.
-const GPU: f64 = 1e-3;
+const GPU: naive::Pixels = 1e-3;
 
 fn grid(scene: &mut Scene, cells: u32) -> Grid {
     Grid::sort_scene(scene, &GridConfig::longest_side(cells)).unwrap()
@@ -278,10 +279,10 @@ fn records_that_no_grid_takes_do_no_harm() {
             let content = Content { scene: &scene, bricks: &bricks, blocks: &[] };
             renderer.draw(&content, &visible.bricks).unwrap();
             let picture = renderer.finish(&content).unwrap();
-            // Those at the places -1 and 0 are as good as any; infinite radii are the caller's fault.
-            let is_good = |id: &u32| [0, 10, 11, 13, 14].contains(id) || id.is_multiple_of(3);
+            // Those at the places -1 and 0 are as good as any.
+            let is_good = |id: &u32| [0, 10, 11, 13, 14].contains(id);
             let ids = picture.visible_records();
-            assert!(ids.iter().all(is_good), "{name}: {ids:?}");
+            assert!(!ids.is_empty() && ids.iter().all(is_good), "{name}: {ids:?}");
             assert!(picture.depth.iter().all(|depth| *depth > 0.0), "{name}");
         }
     }

@@ -1,6 +1,7 @@
 //! What may go wrong on a GPU: typed errors that say what is at fault, no panic, nothing that leaks,
 //! and a program's own device is left as it was.
 
+#![cfg(feature = "gpu")]
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -310,7 +311,7 @@ fn changes_of_view_leak_nothing() {
     let (Some(before), Some(after)) = (bytes, resident()) else { return };
     println!("{} KiB, after 1000 views {} KiB", before / 1024, after / 1024);
     // This driver keeps some bytes of each dispatch; the objects, which it does not, are counted.
-    if info.driver_info.contains("Mesa 22.") {
+    if info.driver_info.starts_with("Mesa 22.") {
         return println!("not judged: {} keeps memory of its own", info.driver_info);
     }
     // 32 KiB for each view: half of what the runs of a single picture take. Other tests run beside

@@ -1,6 +1,7 @@
 //! Promise 2 on the GPU: what is not open does not change, what is settled is complete, and a picture
 //! begins with what was seen in the one before.
 
+#![cfg(feature = "gpu")]
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,

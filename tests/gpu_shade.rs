@@ -1,6 +1,7 @@
 //! Shading on the GPU makes the images that the CPU makes: of whatever scene, coloring, background and
 //! view, within whatever memory, and in a program's own pass.
 
+#![cfg(feature = "gpu")]
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,

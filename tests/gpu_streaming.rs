@@ -1,6 +1,7 @@
 //! Scenes that are larger than what is kept of them on the GPU: the same pictures, within the budget,
 //! and what is there is not brought again.
 
+#![cfg(feature = "gpu")]
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,

@@ -12,6 +12,8 @@ use crate::{
 };
 use bytemuck::{Pod, Zeroable};
 
+pub(crate) const SOURCE: &str = shader!("compositor");
+
 /// A pass that images are drawn in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompositorConfig {
@@ -125,7 +127,7 @@ impl Compositor {
 }
 
 fn pipeline(gpu: &Gpu, config: &CompositorConfig) -> wgpu::RenderPipeline {
-    let module = module(gpu, "Compositor::module", shader!("compositor"));
+    let module = module(gpu, "Compositor::module", SOURCE);
     let sampled = |binding| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::FRAGMENT,
@@ -187,4 +189,15 @@ fn pipeline(gpu: &Gpu, config: &CompositorConfig) -> wgpu::RenderPipeline {
         multiview_mask: None,
         cache: None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shaders::assert_same_layout;
+
+    #[test]
+    fn structs_are_those_of_the_shaders() {
+        assert_same_layout!(SOURCE, "Composite", CompositeData { z, w, size, is_linear, spare });
+    }
 }

@@ -68,3 +68,64 @@ fn draw_row(camera: &Camera, ball: &Ball, row: usize, (first, pixels): (u16, &mu
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{kernels::PATCH, shaders::assert_same_layout, table::bound_of_sphere};
+    use proptest::prelude::*;
+    use puncta_core::View;
+
+    #[test]
+    fn a_rectangle_is_that_of_the_shaders() {
+        assert_same_layout!(PATCH, "Patch", Rectangle { first, size });
+    }
+
+    /// What a pixel of a picture shows of some balls, as a key.
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+    fn key(camera: &Camera, balls: &[Ball], [column, row]: [u32; 2]) -> u64 {
+        let ray = camera.ray(column.into(), row.into());
+        let hits = balls.iter().filter_map(|ball| {
+            let depth = camera.depth(ray, ball.center, ball.radius)? as f32;
+            depth.is_finite().then_some((depth, ball.id))
+        });
+        let nearest = hits.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        nearest.map_or(0, |(depth, id)| u64::from(!depth.to_bits()) << 32 | u64::from(!id))
+    }
+
+    proptest! {
+        /// Around the eye and cut by the near plane as well: what is drawn is what the camera says of
+        /// each pixel, and beside the rectangle there is nothing.
+        #[test]
+        fn balls_are_drawn_as_the_camera_sees_them(
+            is_perspective in any::<bool>(),
+            near in prop_oneof![Just(1e-6), Just(0.5)],
+            balls in prop::collection::vec(
+                ([-3.0..3.0, -3.0..3.0, -3.0..4.0], 0.01..4.0, 0_u32..5),
+                0..6,
+            ),
+        ) {
+            let view = View::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y).unwrap();
+            let view = view.with_size(37, 23).unwrap().with_near(near).unwrap();
+            let view = if is_perspective { view } else { view.with_orthographic(4.0).unwrap() };
+            let camera = Camera::new(&view, DVec3::ZERO);
+            let ball = |(center, radius, id): ([f64; 3], f64, u32)| {
+                let center = DVec3::from(center);
+                let bound = bound_of_sphere(&camera, center, radius)?;
+                Some(Ball { center, radius, bound, id })
+            };
+            let balls: Vec<Ball> = balls.into_iter().filter_map(ball).collect();
+            let drawn = draw(&camera, &balls);
+            prop_assert_eq!(drawn.is_some(), !balls.is_empty());
+            for (row, column) in (0_u32..23).flat_map(|row| (0_u32..37).map(move |column| (row, column))) {
+                let shown = drawn.as_ref().map_or(0, |(rectangle, pixels)| {
+                    let x = column.wrapping_sub(rectangle.first[0]);
+                    let y = row.wrapping_sub(rectangle.first[1]);
+                    let is_in = x < rectangle.size[0] && y < rectangle.size[1];
+                    if is_in { pixels[(y * rectangle.size[0] + x) as usize] } else { 0 }
+                });
+                prop_assert_eq!(shown, key(&camera, &balls, [column, row]));
+            }
+        }
+    }
+}

@@ -7,7 +7,7 @@ in `f64`: they are as exact as those of the CPU's renderer, and at rims, where `
 too. Where the answer hangs on a hair and `f64` says that the ray misses, the GPU's depth stays.
 */
 
-use crate::{Error, GpuRenderer, kernel::read, renderer::Frame, survey::words};
+use crate::{Error, GpuRenderer, kernel::read, picture::Frame, survey::words};
 use puncta_core::{Content, NO_RECORD, Picture, Record};
 use rayon::prelude::*;
 

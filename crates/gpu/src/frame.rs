@@ -54,3 +54,32 @@ impl CameraData {
 pub(crate) fn tiles(view: &View) -> u32 {
     view.width().div_ceil(TILE) * view.height().div_ceil(TILE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{kernels::CULL, shaders::assert_same_layout};
+
+    #[test]
+    fn the_camera_is_that_of_the_shaders() {
+        assert_same_layout!(
+            CULL,
+            "Camera",
+            CameraData {
+                right,
+                width,
+                up,
+                height,
+                forward,
+                near,
+                middle,
+                step,
+                pixel,
+                per_pixel,
+                radius_min,
+                across,
+                is_perspective,
+            }
+        );
+    }
+}

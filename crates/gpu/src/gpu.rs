@@ -21,7 +21,7 @@ pub struct Gpu {
 }
 
 /// What drawing makes use of where it is there.
-const WANTED: Features = Features::SHADER_INT64
+pub(crate) const WANTED: Features = Features::SHADER_INT64
     .union(Features::SHADER_INT64_ATOMIC_MIN_MAX)
     .union(Features::SHADER_INT64_ATOMIC_ALL_OPS)
     .union(Features::SHADER_EARLY_DEPTH_TEST)
@@ -229,7 +229,7 @@ fn full(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
 
 /// Mesh shaders are marked as experimental: wgpu does not vouch that every use of them is sound.
 #[expect(unsafe_code, reason = "mesh shaders can be had in no other way")]
-fn experimental() -> wgpu::ExperimentalFeatures {
+pub(crate) fn experimental() -> wgpu::ExperimentalFeatures {
     // SAFETY: what is drawn with them is drawn by one small shader, which writes within its arrays,
     // and only on adapters that name the feature.
     unsafe { wgpu::ExperimentalFeatures::enabled() }

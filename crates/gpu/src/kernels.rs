@@ -26,13 +26,27 @@ pub(crate) struct Kernels {
 }
 
 const TILES: &str = shader!("camera", "visibility_read", "tiles");
-const CULL: &str = shader!("camera", "disc", "work", "place", "cull");
+pub(crate) const CULL: &str = shader!("camera", "disc", "work", "place", "cull");
 const SET_UP: &str = shader!("camera", "disc", "work", "place", "setup", "recall");
 const ARGUMENTS: &str = shader!("work", "arguments");
 const SEEN: &str = shader!("camera", "visibility_read", "seen");
 const CLAIM: &str = shader!("camera", "claim");
-const PATCH: &str = shader!("camera", "patch");
-const SURVEY: &str = shader!("camera", "disc", "work", "place", "visibility_read", "survey");
+pub(crate) const PATCH: &str = shader!("camera", "patch");
+pub(crate) const SURVEY: &str =
+    shader!("camera", "disc", "work", "place", "visibility_read", "survey");
+
+/// All of these, to be tested.
+#[cfg(test)]
+pub(crate) const SOURCES: [(&str, &str); 8] = [
+    ("tiles", TILES),
+    ("cull", CULL),
+    ("set up", SET_UP),
+    ("arguments", ARGUMENTS),
+    ("seen", SEEN),
+    ("claim", CLAIM),
+    ("patch", PATCH),
+    ("survey", SURVEY),
+];
 
 impl Kernels {
     pub(crate) fn new(gpu: &Gpu, setup: Setup, fragment: Fragment) -> Result<Self, Error> {

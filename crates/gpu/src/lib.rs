@@ -72,6 +72,7 @@ latest view takes over at the next one.
 
 mod compositor;
 mod config;
+mod draw;
 mod error;
 mod exact;
 mod finish;
@@ -80,6 +81,7 @@ mod gpu;
 mod kernel;
 mod kernels;
 mod paint;
+mod picture;
 mod raster;
 mod renderer;
 mod residency;
@@ -89,6 +91,8 @@ mod shade;
 mod shade_list;
 mod shade_pass;
 mod shaded;
+#[cfg(test)]
+mod shaders;
 mod store;
 mod survey;
 mod table;

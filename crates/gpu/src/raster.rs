@@ -133,7 +133,7 @@ pub(crate) const fn vertices(setup: Setup, fragment: Fragment) -> (u32, bool) {
     }
 }
 
-fn source(setup: Setup, fragment: Fragment, visibility: &str) -> String {
+pub(crate) fn source(setup: Setup, fragment: Fragment, visibility: &str) -> String {
     let head = if setup == Setup::Mesh { "enable wgpu_mesh_shader;\n" } else { "" };
     let early = match fragment {
         Fragment::SphereEarly => {
@@ -146,14 +146,17 @@ fn source(setup: Setup, fragment: Fragment, visibility: &str) -> String {
     [head, common, visibility, &early, mesh].concat()
 }
 
+pub(crate) fn splat_source(visibility: &str) -> String {
+    [shader!("camera", "disc", "work", "splat"), visibility].concat()
+}
+
 fn splat(gpu: &Gpu, fragment: Fragment) -> Kernel {
-    let common = shader!("camera", "disc", "work", "splat");
     let entry = match fragment {
         Fragment::Point => "splat_point",
         Fragment::Proxy => "splat_proxy",
         _ => "splat",
     };
-    Kernel::new(gpu, "Raster::splat", (&[common, gpu.visibility()].concat(), entry), &[])
+    Kernel::new(gpu, "Raster::splat", (&splat_source(gpu.visibility()), entry), &[])
 }
 
 fn entries(setup: Setup, fragment: Fragment) -> (&'static str, &'static str) {

@@ -16,8 +16,8 @@ use crate::{
     frame::tiles,
     kernel::{Pool, Work, uniform},
     kernels::Kernels,
+    picture::Frame,
     raster::{Canvas, Raster},
-    renderer::Frame,
     store::Page,
 };
 use bytemuck::{Pod, Zeroable};
@@ -34,8 +34,8 @@ pub(crate) const IS_TESTED: u32 = 2;
 pub(crate) const IS_RECALLED: u32 = 4;
 pub(crate) const IS_COUNTED: u32 = 8;
 
-const DISC_BYTES: u64 = 48;
-const CHUNK_BYTES: u64 = 8;
+pub(crate) const DISC_BYTES: u64 = 48;
+pub(crate) const CHUNK_BYTES: u64 = 8;
 
 /// `Piece` of `cull.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -302,5 +302,22 @@ impl Stage<'_> {
         })?;
         self.frame.are_tiles_fresh = false;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{kernels::CULL, shaders::assert_same_layout};
+
+    #[test]
+    fn structs_are_those_of_the_shaders() {
+        assert_same_layout!(CULL, "Piece", Piece { run, slot, count, flags });
+        assert_same_layout!(CULL, "Round", RoundData { pieces, capacity, small, pass_of_two });
+        assert_same_layout!(
+            CULL,
+            "Counts",
+            Counts { chunks, large, small, bricks, records, recalled, open, spare }
+        );
     }
 }

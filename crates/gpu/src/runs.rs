@@ -122,3 +122,6 @@ fn is_drawable(camera: &Camera, center: DVec3, (extent, radius): (f64, f64)) -> 
         && SIZES[0] <= camera.pixel_size()
         && camera.pixel_size() <= SIZES[1]
 }
+
+#[cfg(test)]
+mod tests;

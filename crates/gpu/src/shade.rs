@@ -314,3 +314,31 @@ impl ShadeData {
 fn decode(srgb: f32) -> f32 {
     if srgb <= 0.040_45 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{shade_pass::SHADE, shaders::assert_same_layout};
+
+    #[test]
+    fn structs_are_those_of_the_shaders() {
+        assert_same_layout!(
+            SHADE,
+            "Shade",
+            ShadeData {
+                size,
+                factor,
+                ambient,
+                first_row,
+                rows,
+                per_record,
+                has_background,
+                top,
+                words,
+                bottom,
+                spare,
+                decode,
+            }
+        );
+    }
+}

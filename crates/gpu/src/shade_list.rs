@@ -95,8 +95,15 @@ impl Entry {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shaders::assert_same_layout;
     use proptest::prelude::*;
     use puncta_core::View;
+
+    #[test]
+    fn an_entry_is_that_of_the_shaders() {
+        let [.., (_, source)] = crate::shade_pass::SOURCES;
+        assert_same_layout!(source, "Entry", Entry { m, whole, k, color });
+    }
 
     /// As `light` of `shade.wgsl`.
     fn facing(camera: &Camera, entry: &Entry, pixel: [i32; 2]) -> f32 {

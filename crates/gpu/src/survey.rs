@@ -146,3 +146,14 @@ pub(crate) fn open_pixels(renderer: &mut GpuRenderer) -> Result<Vec<bool>, Error
 pub(crate) fn words(bytes: &[u8]) -> Vec<u32> {
     bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{kernels::SURVEY, shaders::assert_same_layout};
+
+    #[test]
+    fn what_is_left_is_that_of_the_shaders() {
+        assert_same_layout!(SURVEY, "Left", Left { run, far });
+    }
+}

@@ -147,3 +147,75 @@ pub(crate) fn bound_of_sphere(
         ),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DVec3, Vec3};
+    use proptest::prelude::*;
+    use puncta_core::{Aabb, View};
+
+    fn camera(eye: [f64; 3], opening: f64, is_perspective: bool, near: f64) -> Option<Camera> {
+        let view = View::look_at(DVec3::from(eye), DVec3::new(0.1, 0.2, 0.3), DVec3::Z).ok()?;
+        let view = view.with_size(61, 47).ok()?.with_near(near).ok()?;
+        let view = if is_perspective {
+            view.with_perspective(opening).ok()?
+        } else {
+            view.with_orthographic(4.0 * opening).ok()?
+        };
+        Some(Camera::new(&view, DVec3::ZERO))
+    }
+
+    proptest! {
+        /// No pixel beside the bound shows the sphere, and none in front of its depth; and where
+        /// there is no bound, none at all.
+        #[test]
+        fn spheres_lie_in_their_bounds(
+            eye in [-3.0..3.0, -3.0..3.0, -3.0..3.0],
+            opening in 0.01_f64..3.0,
+            is_perspective in any::<bool>(),
+            near in prop_oneof![Just(1e-6), Just(0.3)],
+            center in [-3.0..3.0, -3.0..3.0, -3.0..3.0],
+            radius in -4.0_f64..1.0,
+        ) {
+            let Some(camera) = camera(eye, opening, is_perspective, near) else { return Ok(()) };
+            let (center, radius) = (camera.place(DVec3::from(center)), 10_f64.powf(radius));
+            let bound = bound_of_sphere(&camera, center, radius);
+            for (row, column) in (0_u16..47).flat_map(|row| (0_u16..61).map(move |x| (row, x))) {
+                let ray = camera.ray(column.into(), row.into());
+                let Some(depth) = camera.depth(ray, center, radius) else { continue };
+                prop_assert!(bound.is_some());
+                let Some(bound) = bound else { continue };
+                let holds = |[first, last]: [u16; 2], at: u16| first <= at && at <= last;
+                prop_assert!(holds(bound.columns, column) && holds(bound.rows, row));
+                prop_assert!(f64::from(bound.nearest) <= depth);
+            }
+        }
+
+        /// The bound of a brick holds its spheres, whatever the smallest size that they are drawn with.
+        #[test]
+        fn spheres_that_are_made_larger_lie_in_the_bound_of_their_brick(
+            eye in [-9.0..9.0, -9.0..9.0, -9.0..9.0],
+            opening in 0.01_f64..2.0,
+            is_perspective in any::<bool>(),
+            sides in [0.0_f32..2.0, 0.0_f32..2.0, 0.0_f32..2.0],
+            share in [0.0_f32..=1.0, 0.0_f32..=1.0, 0.0_f32..=1.0, 0.0_f32..=1.0],
+            radius_min in 0.0_f32..3.0,
+        ) {
+            let Some(camera) = camera(eye, opening, is_perspective, 1e-3) else { return Ok(()) };
+            let bounds = Aabb { min: Vec3::ZERO, max: Vec3::from(sides) };
+            let brick = Brick { records: 0..1, bounds, radius_max: 0.1, density: 1.0 };
+            let brick = grown(&brick, &camera, radius_min);
+            let bound = Bounder::new(&camera).bound(&brick.bounds, brick.radius_max);
+            let offset = Vec3::new(share[0], share[1], share[2]) * Vec3::from(sides);
+            let center = camera.place(offset.as_dvec3());
+            let spread = if is_perspective { center.z } else { 1.0 };
+            let least = f64::from(radius_min) * camera.pixel_size() * spread;
+            let radius = f64::from(0.1 * share[3]).max(least);
+            let Some(own) = bound_of_sphere(&camera, center, radius) else { return Ok(()) };
+            prop_assert!(bound.columns[0] <= own.columns[0] && own.columns[1] <= bound.columns[1]);
+            prop_assert!(bound.rows[0] <= own.rows[0] && own.rows[1] <= bound.rows[1]);
+            prop_assert!(bound.nearest <= own.nearest);
+        }
+    }
+}
