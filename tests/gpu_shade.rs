@@ -6,10 +6,12 @@
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
     clippy::print_stdout,
-    reason = "a test may panic and talk, and its numbers are small"
+    dead_code,
+    reason = "a test may panic and talk, its numbers are small, and it shares parts with others"
 )]
 
 use glam::DVec3;
+use gpu::open;
 use puncta::{
     Background, Bricks, ColorMap, Coloring, Content, CpuRenderer, Depth, FrustumCull, Gpu,
     GpuConfig, GpuRenderer, Grid, GridConfig, Image, Paint, Picture, Pipeline, Scene, ShadeConfig,
@@ -18,22 +20,11 @@ use puncta::{
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+mod gpu;
 mod window;
 
 /// The share of the pixels that may differ by more than one step in a channel.
 const SHARE_MAX: f64 = 1e-5;
-
-/// An adapter; without one, tests fail unless they were told that there is none.
-fn gpu(extent: Extent) -> Option<Gpu> {
-    match Gpu::new(None, extent) {
-        Ok(gpu) => Some(gpu),
-        Err(error) if std::env::var_os("PUNCTA_NO_GPU").is_some_and(|set| set == "1") => {
-            println!("left out: {error}");
-            None
-        }
-        Err(error) => panic!("{error} (PUNCTA_NO_GPU=1 leaves these tests out)"),
-    }
-}
 
 /// Spheres in a cube, with all the columns that one can color by.
 fn cloud(seed: u64, count: usize, radii: [f32; 2]) -> (Scene, Grid) {
@@ -104,40 +95,63 @@ fn by_gpu(
     pipeline.renderer_mut().shade_image(&content, &config, &paint).unwrap()
 }
 
-/// How many pixels differ by more than one step, and how many at all.
-fn differing(a: &Image, b: &Image) -> (usize, usize) {
+/// By how many steps each pixel differs, in the channel that differs most.
+fn steps(a: &Image, b: &Image) -> Vec<u8> {
     assert_eq!((a.width, a.height), (b.width, b.height));
     let step = |(a, b): (&[u8; 4], &[u8; 4])| {
         a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
     };
-    let steps: Vec<u8> = a.pixels.iter().zip(&b.pixels).map(step).collect();
-    (steps.iter().filter(|step| **step > 1).count(), steps.iter().filter(|step| **step > 0).count())
+    a.pixels.iter().zip(&b.pixels).map(step).collect()
+}
+
+/// For each pixel of an image, whether all of it shows the same records in two pictures.
+fn same_records(a: &Picture, b: &Picture, image: &Image) -> Vec<bool> {
+    let (width, factor) = (image.width as usize, (a.width / image.width) as usize);
+    let is_same = |pixel: usize| {
+        let first = pixel / width * factor * a.width as usize + pixel % width * factor;
+        (0..factor * factor).all(|sample| {
+            let place = first + sample / factor * a.width as usize + sample % factor;
+            a.id[place] == b.id[place]
+        })
+    };
+    (0..image.pixels.len()).map(is_same).collect()
 }
 
 /// The sum over many images, so that a share of 1e-5 is something.
 #[derive(Default)]
 struct Tally {
     pixels: usize,
-    beyond: usize,
-    differing: usize,
     covered: usize,
+    /// Pixels that differ at all, and by more than a step.
+    differing: usize,
+    beyond: usize,
+    /// Pixels that show other records: where two are equally near, or a ray touches.
+    other: usize,
 }
 
 impl Tally {
-    fn add(&mut self, name: &str, (cpu, picture): (&Image, &Picture), found: &Image) {
-        let (beyond, differing) = differing(cpu, found);
-        println!("{name:<50} beyond a step {beyond:>3}, differing {differing:>5}");
-        self.pixels += cpu.pixels.len();
-        self.beyond += beyond;
+    fn add(&mut self, name: &str, cpu: (&Image, &Picture), gpu: (&Image, &Picture)) {
+        let same = same_records(cpu.1, gpu.1, cpu.0);
+        let of_same = || steps(cpu.0, gpu.0).into_iter().zip(&same).filter(|(_, same)| **same);
+        let differing = of_same().filter(|(step, _)| *step > 0).count();
+        let beyond = of_same().filter(|(step, _)| *step > 1).count();
+        let other = same.iter().filter(|same| !**same).count();
+        println!(
+            "{name:<50} beyond a step {beyond:>3}, differing {differing:>5}, other {other:>3}"
+        );
+        self.pixels += same.len();
+        self.covered += cpu.1.covered_pixels() * same.len() / cpu.1.id.len();
         self.differing += differing;
-        self.covered += picture.covered_pixels();
+        self.beyond += beyond;
+        self.other += other;
     }
 
     fn check(&self) {
-        let Self { pixels, beyond, differing, covered } = *self;
-        println!("of {pixels} pixels {beyond} beyond a step, {differing} differing");
+        let Self { pixels, covered, differing, beyond, other } = *self;
+        println!("of {pixels} pixels {beyond} beyond a step, {differing} differing, {other} other");
         assert!(covered * 10 > pixels, "there must be something to shade");
         assert!(beyond as f64 <= SHARE_MAX * pixels as f64, "{beyond} of {pixels} pixels differ");
+        assert!(other * 2000 < pixels, "{other} of {pixels} pixels show other records");
     }
 }
 
@@ -183,7 +197,7 @@ fn views(random: &mut Pcg64Mcg) -> Vec<(&'static str, View)> {
 
 /// All colorings, backgrounds, supersamplings and views, in one renderer each.
 fn compare(extent: Extent) {
-    let Some(gpu) = gpu(extent) else { return };
+    let Some(gpu) = open(extent) else { return };
     let mut random = Pcg64Mcg::seed_from_u64(5);
     let map = ColorMap::default();
     let mut tally = Tally::default();
@@ -199,10 +213,11 @@ fn compare(extent: Extent) {
                 supersample: 1 + (key as u32) % 3,
             };
             let (picture, cpu) = by_cpu(&scene, &grid, &view, &shading);
-            on_gpu.render(&scene, &grid, &fine(&view, shading.supersample)).unwrap();
+            let fine = fine(&view, shading.supersample);
+            let drawn = on_gpu.render(&scene, &grid, &fine).unwrap();
             let found = by_gpu(&mut on_gpu, (&scene, &grid), &shading, key as u64 % 5);
             let name = format!("{name}, {radii:?}, supersample {}", shading.supersample);
-            tally.add(&name, (&cpu, &picture), &found);
+            tally.add(&name, (&cpu, &picture), (&found, &drawn));
         }
     }
     tally.check();
@@ -220,19 +235,19 @@ fn images_are_those_of_the_cpu_with_nothing_but_webgpu() {
 
 #[test]
 fn one_picture_is_shaded_in_all_ways() {
-    let Some(gpu) = gpu(Extent::Full) else { return };
+    let Some(gpu) = open(Extent::Full) else { return };
     let map = ColorMap::named("magma_r").unwrap();
     let (scene, grid) = cloud(7, 20_000, [0.005, 0.05]);
     let view = view(&mut Pcg64Mcg::seed_from_u64(8), 3.0);
     let mut on_gpu = pipeline(&gpu, 1 << 24);
-    on_gpu.render(&scene, &grid, &fine(&view, 2)).unwrap();
+    let drawn = on_gpu.render(&scene, &grid, &fine(&view, 2)).unwrap();
     let mut tally = Tally::default();
     for (key, coloring) in colorings(&map).into_iter().enumerate() {
         for background in BACKGROUNDS {
             let shading = Shading { coloring, background, ambient: 0.18, supersample: 2 };
             let (picture, cpu) = by_cpu(&scene, &grid, &view, &shading);
             let found = by_gpu(&mut on_gpu, (&scene, &grid), &shading, key as u64);
-            tally.add(&format!("{background:?}"), (&cpu, &picture), &found);
+            tally.add(&format!("{background:?}"), (&cpu, &picture), (&found, &drawn));
         }
     }
     tally.check();
@@ -242,7 +257,7 @@ fn one_picture_is_shaded_in_all_ways() {
 #[test]
 fn scenes_larger_than_the_budget_are_shaded() {
     for extent in [Extent::Full, Extent::Core] {
-        let Some(gpu) = gpu(extent) else { return };
+        let Some(gpu) = open(extent) else { return };
         let (scene, grid) = cloud(11, 60_000, [0.004, 0.02]);
         let budget = 24 * 1024 * 5;
         assert!((budget as usize) < scene.records.len() * 24 / 8);
@@ -253,20 +268,39 @@ fn scenes_larger_than_the_budget_are_shaded() {
             let view = view(&mut random, 2.0 + key as f64);
             let shading = Shading { coloring: Coloring::Colors, ..Shading::default() };
             let (picture, cpu) = by_cpu(&scene, &grid, &view, &shading);
-            on_gpu.render(&scene, &grid, &view).unwrap();
+            let drawn = on_gpu.render(&scene, &grid, &view).unwrap();
             let found = by_gpu(&mut on_gpu, (&scene, &grid), &shading, 0);
             assert!(on_gpu.renderer().record_bytes() <= budget);
-            tally.add("budget", (&cpu, &picture), &found);
+            tally.add("budget", (&cpu, &picture), (&found, &drawn));
         }
         tally.check();
     }
+}
+
+/// Large pictures are shaded in more than one band.
+#[test]
+fn large_pictures_are_shaded_in_bands() {
+    let Some(gpu) = open(Extent::Full) else { return };
+    let (scene, grid) = cloud(15, 10_000, [0.005, 0.1]);
+    let view = view(&mut Pcg64Mcg::seed_from_u64(16), 1.6).with_size(1151, 1000).unwrap();
+    let map = ColorMap::default();
+    let coloring = Coloring::Scalar { name: "charge", map: &map, range: None };
+    let shading = Shading { coloring, supersample: 2, ..Shading::default() };
+    let (picture, cpu) = by_cpu(&scene, &grid, &view, &shading);
+    assert!(picture.id.len() > 1 << 22);
+    let mut on_gpu = pipeline(&gpu, 1 << 24);
+    let drawn = on_gpu.render(&scene, &grid, &fine(&view, 2)).unwrap();
+    let found = by_gpu(&mut on_gpu, (&scene, &grid), &shading, 0);
+    let mut tally = Tally::default();
+    tally.add("bands", (&cpu, &picture), (&found, &drawn));
+    tally.check();
 }
 
 /// With ambient light alone, a covered pixel shows its color and any other one the background. Nothing
 /// is left over, whatever was in the buffers before.
 #[test]
 fn all_covered_pixels_get_their_color() {
-    let Some(gpu) = gpu(Extent::Full) else { return };
+    let Some(gpu) = open(Extent::Full) else { return };
     let mut random = Pcg64Mcg::seed_from_u64(21);
     let (scene, grid) = cloud(22, 5000, [1e-3, 0.4]);
     let mut on_gpu = pipeline(&gpu, 1 << 24);
@@ -289,7 +323,7 @@ fn all_covered_pixels_get_their_color() {
 /// A picture that is not complete, or of nothing, can be shaded as well.
 #[test]
 fn unfinished_pictures_are_shaded() {
-    let Some(gpu) = gpu(Extent::Full) else { return };
+    let Some(gpu) = open(Extent::Full) else { return };
     let (scene, grid) = cloud(31, 30_000, [0.005, 0.03]);
     let view = view(&mut Pcg64Mcg::seed_from_u64(32), 3.0);
     let mut on_gpu = pipeline(&gpu, 1 << 24);
@@ -304,7 +338,7 @@ fn unfinished_pictures_are_shaded() {
         let renderer = progressive.renderer_mut();
         let found = renderer.shade_image(&content(&scene, &grid), &config, &paint).unwrap();
         let expected = shade(&scene, &view, &picture, &shading).unwrap();
-        assert_eq!(differing(&expected, &found).0, 0);
+        assert!(steps(&expected, &found).iter().all(|step| *step <= 1));
         covered.push(picture.covered_pixels());
         progressive.next().unwrap().unwrap();
     }
@@ -314,14 +348,15 @@ fn unfinished_pictures_are_shaded() {
 
 #[test]
 fn what_cannot_be_shaded_is_refused() {
-    let Some(gpu) = gpu(Extent::Full) else { return };
+    let Some(gpu) = open(Extent::Full) else { return };
     let (scene, grid) = cloud(41, 100, [0.01, 0.2]);
     let mut on_gpu = pipeline(&gpu, 1 << 24);
     let paint = Paint::Uniform([255; 3]);
     let config = ShadeConfig { supersample: 7, ..ShadeConfig::default() };
     let here = content(&scene, &grid);
     let begun = on_gpu.renderer_mut().shade_image(&here, &config, &paint);
-    assert!(begun.unwrap_err().to_string().contains("begin"));
+    let not_begun = puncta::core::Error::NotBegun;
+    assert_eq!(begun.unwrap_err(), puncta::gpu::Error::Core(not_begun));
     let view = view(&mut Pcg64Mcg::seed_from_u64(42), 3.0);
     on_gpu.render(&scene, &grid, &view).unwrap();
     let uneven = on_gpu.renderer_mut().shade_image(&here, &config, &paint).unwrap_err();
@@ -336,7 +371,7 @@ fn what_cannot_be_shaded_is_refused() {
 /// The image appears in a pass of a program that has its own device, and hides what lies behind it.
 #[test]
 fn a_pass_of_ones_own_shows_the_image_in_depth() {
-    let Some(own) = gpu(Extent::Core) else { return };
+    let Some(own) = open(Extent::Core) else { return };
     let gpu = Gpu::from_device(own.device().clone(), own.queue().clone());
     let (scene, grid) = cloud(51, 2000, [0.02, 0.2]);
     let view = view(&mut Pcg64Mcg::seed_from_u64(52), 3.0);

@@ -63,9 +63,13 @@ fn mixed(sum: vec3<f32>, covered: f32, row: u32) -> vec4<f32> {
         }
         return to_bytes(vec4(encode(sum / covered), share));
     }
-    let down = f32(row) / f32(max(shade.size.y, 2u) - 1u);
-    let behind = decode((shade.top + (shade.bottom - shade.top) * down) / 255.0);
-    return to_bytes(vec4(encode(sum / samples + behind * (1.0 - share)), 1.0));
+    var color = sum / samples;
+    if covered < samples {
+        let down = f32(row) / f32(max(shade.size.y, 2u) - 1u);
+        let behind = decode((shade.top + (shade.bottom - shade.top) * down) / 255.0);
+        color += behind * (1.0 - share);
+    }
+    return to_bytes(vec4(encode(color), 1.0));
 }
 
 fn to_bytes(color: vec4<f32>) -> vec4<f32> {
