@@ -144,7 +144,8 @@ fn second(
         let mut steps = steps?;
         let (step, span) = time(|| steps.next());
         step.transpose()?;
-        (first_step += began, first_step += span);
+        first_step += began;
+        first_step += span;
         for step in &mut steps {
             step?;
         }
