@@ -27,6 +27,9 @@ use puncta::{
 use serde_json::{Value, json};
 use std::process::Command;
 
+/// The smallest budget that the renderer takes.
+const LEAST: u64 = 1024 * 20;
+
 /// What was measured of a way to bring so many particles.
 #[derive(Debug)]
 pub(crate) struct Row {
@@ -124,7 +127,7 @@ fn subjects<'a>(
     let mut subjects: Vec<_> = Way::all(gpu).map(plain).into();
     let all = count as u64 * 20;
     for (name, record_bytes) in
-        [("puncta, a quarter fits", all / 4), ("puncta, resident", u64::MAX)]
+        [("puncta, a quarter fits", (all / 4).max(LEAST)), ("puncta, resident", u64::MAX)]
     {
         let config = roomy(count as u64, Skipping::Nothing);
         let record_bytes = record_bytes.min(config.record_bytes);
