@@ -75,10 +75,6 @@ pub(crate) struct ShadeData {
     pub(crate) decode: [f32; 256],
 }
 
-/// All of these, to be tested.
-#[cfg(test)]
-pub(crate) const SOURCES: [(&str, &str); 3] = [("seen", SEEN), ("table", TABLE), ("shade", SHADE)];
-
 impl GpuRenderer {
     /// Makes an image of what was drawn so far, on the GPU. It equals what the CPU's shading makes of the
     /// finished picture.
@@ -322,7 +318,7 @@ fn decode(srgb: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shaders::assert_same_layout;
+    use crate::{shade_pass::SHADE, shaders::assert_same_layout};
 
     #[test]
     fn structs_are_those_of_the_shaders() {

@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn an_entry_is_that_of_the_shaders() {
-        let [.., (_, source)] = crate::shade::SOURCES;
+        let [.., (_, source)] = crate::shade_pass::SOURCES;
         assert_same_layout!(source, "Entry", Entry { m, whole, k, color });
     }
 

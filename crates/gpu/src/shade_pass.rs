@@ -10,7 +10,13 @@ use crate::{
 
 const SEEN: &str = shader!("camera", "visibility_read", "shade_common", "shade_seen");
 const TABLE: &str = shader!("camera", "disc", "place", "shade_common", "shade_table");
-const SHADE: &str = shader!("camera", "disc", "visibility_read", "shade_common", "shade");
+pub(crate) const SHADE: &str =
+    shader!("camera", "disc", "visibility_read", "shade_common", "shade");
+
+/// All of these, to be tested.
+#[cfg(test)]
+pub(crate) const SOURCES: [(&str, &str); 3] =
+    [("what is seen", SEEN), ("its table", TABLE), ("shade", SHADE)];
 
 /// What shading needs, from one image to the next.
 #[derive(Debug)]

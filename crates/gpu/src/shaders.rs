@@ -9,7 +9,7 @@ use crate::{
     kernel::shader,
     kernels, raster,
     round::{CHUNK_BYTES, DISC_BYTES},
-    shade,
+    shade_pass,
 };
 use naga::{
     Module,
@@ -77,7 +77,7 @@ const WIDE: Capabilities =
 /// Every module that is the same everywhere.
 fn core_sources() -> Vec<(&'static str, &'static str)> {
     let compositor = ("compositor", compositor::SOURCE);
-    kernels::SOURCES.into_iter().chain(shade::SOURCES).chain([compositor]).collect()
+    kernels::SOURCES.into_iter().chain(shade_pass::SOURCES).chain([compositor]).collect()
 }
 
 /// Every module of drawing: its name, its source and what it needs beyond core WebGPU.
@@ -198,6 +198,22 @@ fn every_pipeline_can_be_built() {
                     Err(Error::Unsupported { .. }) => assert!(!is_full && needs_more),
                     Err(error) => panic!("{setup} {fragment}: {error}"),
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn everything_of_shading_can_be_built() {
+    use crate::{Compositor, CompositorConfig, CompositorDepth};
+    let gpu = noop(wgpu::Features::empty());
+    let shading = shade_pass::Shading::new(&gpu, [64, 48]).unwrap();
+    for format in [wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Bgra8UnormSrgb] {
+        for depth in [None, Some(CompositorDepth::reversed(0.1))] {
+            for samples in [1, 4] {
+                let config = CompositorConfig { format, samples, depth };
+                let mut compositor = Compositor::new(&gpu, &config).unwrap();
+                compositor.prepare(&shading.shaded).unwrap();
             }
         }
     }
