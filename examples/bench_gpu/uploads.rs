@@ -1,12 +1,12 @@
 /*!
 What it costs to bring particles to the device for each frame.
 
-The renderer of puncta takes part twice: with a budget in which a quarter of the scene fits, so that in
-each frame nothing that is needed is there any more, and with one in which all of it fits. It brings 20
-bytes for each particle, with its id, and sets all of them up.
+The renderer of puncta takes part twice: with a budget in which a quarter of the scene fits, so that
+in each frame nothing that is needed is there any more, and with one in which all of it fits. It
+brings 20 bytes for each particle, with its id, and sets all of them up.
 
-How much memory a way takes is measured in a process of its own: what one way has given back, the next
-would take again, and seem to need nothing.
+How much memory a way takes is measured in a process of its own: what one way has given back, the
+next would take again, and seem to need nothing.
 */
 
 use crate::{
