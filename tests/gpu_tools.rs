@@ -1,6 +1,7 @@
 //! The example `bench_gpu` on a small scene: what it writes is complete and cannot contradict
 //! itself. Where there is no adapter it fails, unless `PUNCTA_NO_GPU=1`.
 
+#![cfg(feature = "gpu")]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use serde_json::Value;
