@@ -143,8 +143,8 @@ fn pictures_that_are_too_large_are_errors_with_figures() {
 fn what_cannot_be_had_is_said() {
     let Some(gpu) = open(Extent::Core) else { return };
     let with = |config| GpuRenderer::new(&gpu, config).map(|_| ());
-    let small = GpuConfig { record_bytes: 20_479, ..GpuConfig::default() };
-    assert_eq!(with(small), Err(Error::Budget { bytes: 20_479, least: 20_480 }));
+    let small = GpuConfig { record_bytes: 24_575, ..GpuConfig::default() };
+    assert_eq!(with(small), Err(Error::Budget { bytes: 24_575, least: 24_576 }));
     let mesh = GpuConfig { setup: Some(Setup::Mesh), ..GpuConfig::default() };
     let early = GpuConfig { fragment: Some(Fragment::SphereEarly), ..GpuConfig::default() };
     for config in [mesh, early] {

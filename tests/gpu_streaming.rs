@@ -23,7 +23,10 @@ use scenes::cloud;
 mod gpu;
 mod scenes;
 
-/// The smallest budget: 1024 records of 20 bytes.
+/// The smallest budget: 1024 records of 24 bytes.
+const LEAST: u64 = 24_576;
+
+/// What they take without colors.
 const SEGMENT: u64 = 20_480;
 
 fn sorted(seed: u64, count: usize, radii: [f32; 2]) -> (Scene, Grid) {
@@ -39,7 +42,7 @@ fn view(eye: [f64; 3]) -> View {
 }
 
 fn renderer(gpu: &Gpu, setup: Option<Setup>, segments: u64) -> Draws {
-    let record_bytes = segments * SEGMENT;
+    let record_bytes = segments * LEAST;
     draws(GpuRenderer::new(gpu, GpuConfig { setup, record_bytes, ..GpuConfig::default() }).unwrap())
 }
 

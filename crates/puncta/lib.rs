@@ -15,7 +15,6 @@ pub use puncta_core::{
 };
 pub use puncta_cpu::{Background, ColorMap, Coloring, Colors, CpuRenderer, Shading, shade};
 #[cfg(feature = "gpu")]
-#[cfg(feature = "gpu")]
 pub use puncta_gpu::{Compositor, Gpu, GpuConfig, GpuRenderer, Paint, ShadeConfig};
 #[cfg(all(target_endian = "little", any(unix, windows)))]
 pub use puncta_grid::{BrickFile, ConvertConfig, convert};

@@ -1,7 +1,7 @@
 //! How long a new view waits for an answer, while another picture is drawn.
 //!
-//! Pictures are drawn in the background, in steps of [`STEP`]. As soon as a view has its first answer,
-//! the next one is looked at, after a pause in which the drawing goes on.
+//! Pictures are drawn in the background, in steps of [`STEP`]. As soon as a view has its first
+//! answer, the next one is looked at, after a pause in which the drawing goes on.
 
 use crate::{
     Options,

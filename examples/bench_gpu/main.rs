@@ -1,16 +1,16 @@
-//! Measures the strategies of the GPU renderer: set-ups against fragments, what skipping saves, ways to
-//! bring records to the device, and how soon a new view is answered.
+//! Measures the strategies of the GPU renderer: set-ups against fragments, what skipping saves,
+//! ways to bring records to the device, and how soon a new view is answered.
 //!
 //! ```text
 //! cargo run --release --example bench_gpu -- --json out.json --plot out.svg > tables.md
 //! cargo run --release --example bench_gpu -- --help
 //! ```
 //!
-//! The tables are those of chapter 2.1 of the thesis that puncta is built on (2.1 to 2.8), and two that
-//! it could not have: nothing is skipped there. What is compared takes turns, so that a machine that is
-//! slower for a while is so for all of it. Times are medians: on the clock at the wall, and of all
-//! processors of the machine, which for a device that is made of them is the better figure where other
-//! programs are running.
+//! The tables are those of chapter 2.1 of the thesis that puncta is built on (2.1 to 2.8), and two
+//! that it could not have: nothing is skipped there. What is compared takes turns, so that a
+//! machine that is slower for a while is so for all of it. Times are medians: on the clock at the
+//! wall, and of all processors of the machine, which for a device that is made of them is the
+//! better figure where other programs are running.
 
 mod latency;
 mod memory;
@@ -210,8 +210,8 @@ fn run(options: &Options) -> Result<()> {
     }
 }
 
-/// Says it at once: the rest may take long. Nobody may be listening any more; the files are written all
-/// the same.
+/// Says it at once: the rest may take long. Nobody may be listening any more; the files are written
+/// all the same.
 fn tell(text: &str) {
     writeln!(std::io::stdout(), "{text}").ok();
 }

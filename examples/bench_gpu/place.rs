@@ -2,9 +2,9 @@
 A scene, how it is seen, and how it is drawn without a pixel of it being seen.
 
 For the time that geometry takes, the thesis turns the camera away. Here bricks beside the picture
-would be left out before anything is done with them. So they are told to reach into the picture, while
-all their records lie beside it: nothing is culled, every record is placed on the screen, and none
-covers a pixel.
+would be left out before anything is done with them. So they are told to reach into the picture,
+while all their records lie beside it: nothing is culled, every record is placed on the screen, and
+none covers a pixel.
 */
 
 use crate::world::{self, Origin, World};

@@ -33,6 +33,7 @@ pub(crate) fn write(adapter: &str, scenes: &[(String, Vec<Row>)], path: &Path) -
         .disable_x_mesh()
         .x_labels(labels.len() + 3)
         .x_label_formatter(&label)
+        .y_label_formatter(&|y| format!("{y}"))
         .x_desc(legend(scenes))
         .y_desc("milliseconds a frame; open: geometry only")
         .light_line_style(BLACK.mix(0.04))

@@ -1,5 +1,5 @@
-//! What hierarchical depth saves: until a picture is settled, against drawing everything with the same
-//! set-up; and what a second view needs.
+//! What hierarchical depth saves: until a picture is settled, against drawing everything with the
+//! same set-up; and what a second view needs.
 
 use crate::{
     Options,
@@ -156,8 +156,8 @@ fn second(
 }
 
 impl Measured {
-    /// The time until a picture is settled, of that in which everything is drawn: at the wall, and of
-    /// the processors.
+    /// The time until a picture is settled, of that in which everything is drawn: at the wall, and
+    /// of the processors.
     fn shares(&self) -> [f64; 2] {
         let [settled, _, everything] = &self.frames;
         match median(settled).zip(median(everything)) {

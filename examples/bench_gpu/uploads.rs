@@ -1,12 +1,12 @@
 /*!
 What it costs to bring particles to the device for each frame.
 
-The renderer of puncta takes part twice: with a budget in which a quarter of the scene fits, so that in
-each frame nothing that is needed is there any more, and with one in which all of it fits. It brings 20
-bytes for each particle, with its id, and sets all of them up.
+The renderer of puncta takes part twice: with a budget in which a quarter of the scene fits, so that
+in each frame nothing that is needed is there any more, and with one in which all of it fits. It
+brings 20 bytes for each particle, with its id, and sets all of them up.
 
-How much memory a way takes is measured in a process of its own: what one way has given back, the next
-would take again, and seem to need nothing.
+How much memory a way takes is measured in a process of its own: what one way has given back, the
+next would take again, and seem to need nothing.
 */
 
 use crate::{
@@ -26,6 +26,9 @@ use puncta::{
 };
 use serde_json::{Value, json};
 use std::process::Command;
+
+/// The smallest budget that the renderer takes.
+const LEAST: u64 = 1024 * 20;
 
 /// What was measured of a way to bring so many particles.
 #[derive(Debug)]
@@ -124,7 +127,7 @@ fn subjects<'a>(
     let mut subjects: Vec<_> = Way::all(gpu).map(plain).into();
     let all = count as u64 * 20;
     for (name, record_bytes) in
-        [("puncta, a quarter fits", all / 4), ("puncta, resident", u64::MAX)]
+        [("puncta, a quarter fits", (all / 4).max(LEAST)), ("puncta, resident", u64::MAX)]
     {
         let config = roomy(count as u64, Skipping::Nothing);
         let record_bytes = record_bytes.min(config.record_bytes);

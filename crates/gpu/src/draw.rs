@@ -42,7 +42,10 @@ impl GpuRenderer {
                 }
             }
         }
-        self.flush(content, &mut batch, None)?;
+        self.flush(content, &mut batch)?;
+        if let Some(frame) = &mut self.frame {
+            frame.table.forget_records();
+        }
         Ok(close)
     }
 
@@ -60,11 +63,11 @@ impl GpuRenderer {
             let last = records.end.min(segment.saturating_add(1).saturating_mul(SEGMENT));
             let count = last - first;
             if batch.is_full(count) {
-                self.flush(content, batch, None)?;
+                self.flush(content, batch)?;
             }
             let mut slot = self.take(segment, batch);
             if slot.is_none() {
-                self.flush(content, batch, None)?;
+                self.flush(content, batch)?;
                 slot = self.take(segment, batch);
             }
             let least = u64::from(SEGMENT) * crate::store::RECORD_BYTES;
@@ -122,7 +125,6 @@ impl GpuRenderer {
         &mut self,
         content: &Content<'_, R>,
         batch: &mut Batch,
-        seen: Option<(wgpu::Buffer, wgpu::Buffer)>,
     ) -> Result<(), Error> {
         self.round += 1;
         if batch.is_empty() {
@@ -133,6 +135,7 @@ impl GpuRenderer {
         let (Some(store), Some(frame)) = (store, frame) else { return Ok(()) };
         store.bring(gpu, ring, (content.scene, &batch.missing))?;
         let skipping = config.skipping;
+        let seen = batch.seen.clone();
         let mut stage = Stage { gpu, kernels, raster, bench, frame, skipping, seen };
         stage.draw_exact(&batch.balls)?;
         for (index, pieces) in batch.pieces.iter().enumerate().filter(|(_, p)| !p.is_empty()) {
@@ -158,6 +161,7 @@ impl GpuRenderer {
         let Some(seen) = self.find_seen(last, content)? else { return Ok(0) };
         self.clear_counts()?;
         let mut batch = Batch::new(self.store.as_ref().map_or(0, Store::pages));
+        batch.seen = Some((seen, last.drawn.clone()));
         for index in indices {
             let (Some(frame), Some(store)) = (&mut self.frame, &self.store) else { break };
             let Known::Plain(run) = frame.table.known(index) else { continue };
@@ -172,11 +176,11 @@ impl GpuRenderer {
             frame.touched[index as usize] = true;
             let count = records.end.saturating_sub(records.start);
             if batch.is_full(count) {
-                self.flush(content, &mut batch, Some((seen.clone(), last.drawn.clone())))?;
+                self.flush(content, &mut batch)?;
             }
             self.add(content, &mut batch, (run, records), IS_RECALLED)?;
         }
-        self.flush(content, &mut batch, Some((seen, last.drawn.clone())))?;
+        self.flush(content, &mut batch)?;
         Ok(self.bench.counted(&self.gpu)?.recalled.into())
     }
 

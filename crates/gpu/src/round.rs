@@ -77,6 +77,8 @@ pub(crate) struct Batch {
     pub(crate) pieces: Vec<Vec<Piece>>,
     pub(crate) missing: Vec<(u32, u32)>,
     pub(crate) balls: Vec<Ball>,
+    /// The set of seen ids, and the bricks drawn in the picture before, if only these are drawn.
+    pub(crate) seen: Option<(wgpu::Buffer, wgpu::Buffer)>,
     pub(crate) records: u32,
     pub(crate) chunks: u32,
 }

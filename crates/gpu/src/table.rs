@@ -32,6 +32,8 @@ pub(crate) struct Table {
     known: Vec<Known>,
     runs: Vec<Run>,
     buffer: Option<wgpu::Buffer>,
+    /// How many of the runs are of bricks; those of single records follow.
+    of_bricks: usize,
     /// How many of the runs are in the buffer.
     written: usize,
 }
@@ -42,7 +44,7 @@ impl Table {
         self.known.clear();
         self.known.resize(bricks, Known::Unknown);
         self.runs.clear();
-        self.written = 0;
+        (self.of_bricks, self.written) = (0, 0);
     }
 
     /// What is known of a brick, and the index of its run if it has one.
@@ -80,12 +82,19 @@ impl Table {
                 Some((run, false)) => Known::Close(self.push(run)),
             };
         }
+        self.of_bricks = self.runs.len();
     }
 
     /// Adds a run; returns its index.
     pub(crate) fn push(&mut self, run: Run) -> u32 {
         self.runs.push(run);
         u32::try_from(self.runs.len() - 1).unwrap_or(u32::MAX)
+    }
+
+    /// Forgets the runs of single records: what they were for is drawn.
+    pub(crate) fn forget_records(&mut self) {
+        self.runs.truncate(self.of_bricks);
+        self.written = self.written.min(self.of_bricks);
     }
 
     /// The buffer with all runs.
