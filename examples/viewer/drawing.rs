@@ -138,7 +138,9 @@ where
     if frame.progress.is_ok() && is_due {
         let start = Instant::now();
         let factor = if is_fine { 2 } else { 1 };
-        let shown = show(step, factor, &lock(&desk.look).clone(), presenter);
+        // On its own line: the lock ends with the statement.
+        let look = lock(&desk.look).clone();
+        let shown = show(step, factor, &look, presenter);
         match shown {
             Ok(shown) => frame.shown = Some(shown),
             Err(error) => frame.progress = Err(error),

@@ -114,9 +114,10 @@ pub enum Skipping {
 /// How a renderer draws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GpuConfig {
-    /// How spheres become fragments; `None` to let the adapter decide.
+    /// How spheres become fragments; `None` for [`Setup::Compute`] where words of 64 bits can be written at
+    /// once, and [`Setup::Triangle`] elsewhere.
     pub setup: Option<Setup>,
-    /// What fragments do; `None` to let the adapter decide.
+    /// What fragments do; `None` for [`Fragment::Sphere`].
     pub fragment: Option<Fragment>,
     /// Whether what is hidden is left out.
     pub skipping: Skipping,

@@ -15,6 +15,9 @@ use crate::{
 use puncta_core::{Amount, Content, Record, VisibleBrick};
 use std::ops::Range;
 
+/// The most records that are placed one by one, or drawn by the CPU, in a batch.
+const SINGLE_MAX: usize = 1 << 17;
+
 impl GpuRenderer {
     /// Draws bricks that were learned; returns what was drawn of those that the GPU does not count.
     pub(crate) fn draw_round<R: Record>(
@@ -105,12 +108,23 @@ impl GpuRenderer {
             if radius > 0.0 {
                 radius = radius.max(least * spread);
             }
+            // No ray enters a sphere that holds the eye.
+            if camera.is_perspective() && center.length() <= radius {
+                continue;
+            }
             let Some(bound) = bound_of_sphere(&camera, center, radius) else { continue };
+            if self.is_crowded(batch) {
+                self.flush(content, batch)?;
+                if let Some(frame) = &mut self.frame {
+                    frame.table.forget_records();
+                }
+            }
             if is_plain_sphere(&camera, center, radius) {
                 let run = Run::new(&camera, (record.position(), center), &bound, brick);
                 let Some(frame) = &mut self.frame else { continue };
                 let run = frame.table.push(run);
-                let tested = if frame.has_drawn { IS_TESTED } else { 0 };
+                let is_tested = frame.has_drawn && self.config.skipping == Skipping::Hidden;
+                let tested = if is_tested { IS_TESTED } else { 0 };
                 self.add(content, batch, (run, index..index + 1), tested)?;
             } else {
                 let id = content.scene.id(index);
@@ -118,6 +132,12 @@ impl GpuRenderer {
             }
         }
         Ok(())
+    }
+
+    /// Whether a batch holds as many single records as should go through together.
+    fn is_crowded(&self, batch: &Batch) -> bool {
+        let runs = self.frame.as_ref().map_or(0, |frame| frame.table.records());
+        runs >= SINGLE_MAX || batch.balls.len() >= SINGLE_MAX
     }
 
     /// Draws a batch, and empties it.

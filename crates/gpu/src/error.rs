@@ -103,6 +103,12 @@ pub enum Error {
         /// How many pixels of the picture make one of the image, along each side.
         factor: u32,
     },
+    /// A least radius that is no size.
+    #[error("a least radius of {pixels} pixels: it must be finite and not negative")]
+    RadiusMin {
+        /// The radius.
+        pixels: f32,
+    },
     /// A budget in which nothing can be drawn.
     #[error("a budget of {bytes} bytes of GPU memory; it takes at least {least}")]
     Budget {

@@ -37,6 +37,9 @@ pub(crate) fn draw(camera: &Camera, balls: &[Ball]) -> Option<(Rectangle, Vec<u6
         rows: around(a.rows, b.rows),
         nearest: a.nearest.min(b.nearest),
     })?;
+    // The nearest first: of the others, what they hide is not computed.
+    let mut balls = balls.to_vec();
+    balls.sort_by(|a, b| a.bound.nearest.total_cmp(&b.bound.nearest));
     let size = |[first, last]: [u16; 2]| u32::from(last - first) + 1;
     let rectangle = Rectangle {
         first: [all.columns[0].into(), all.rows[0].into()],
@@ -46,7 +49,7 @@ pub(crate) fn draw(camera: &Camera, balls: &[Ball]) -> Option<(Rectangle, Vec<u6
     let mut pixels = vec![0_u64; width * rectangle.size[1] as usize];
     pixels.par_chunks_mut(width).enumerate().for_each(|(row, pixels)| {
         let row = row + usize::from(all.rows[0]);
-        for ball in balls {
+        for ball in &balls {
             let [top, bottom] = ball.bound.rows.map(usize::from);
             if (top..=bottom).contains(&row) {
                 draw_row(camera, ball, row, (all.columns[0], pixels));
@@ -58,12 +61,17 @@ pub(crate) fn draw(camera: &Camera, balls: &[Ball]) -> Option<(Rectangle, Vec<u6
 
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
 fn draw_row(camera: &Camera, ball: &Ball, row: usize, (first, pixels): (u16, &mut [u64])) {
+    // Words before this one are nearer than any of the ball.
+    let nearest = !ball.bound.nearest.max(0.0).to_bits();
     for column in ball.bound.columns[0]..=ball.bound.columns[1] {
+        let pixel = &mut pixels[usize::from(column - first)];
+        if *pixel >> 32 > u64::from(nearest) {
+            continue;
+        }
         let ray = camera.ray(column.into(), row as f64);
         let depth = camera.depth(ray, ball.center, ball.radius).map(|depth| depth as f32);
         if let Some(depth) = depth.filter(|depth| depth.is_finite()) {
             let key = u64::from(!depth.to_bits()) << 32 | u64::from(!ball.id);
-            let pixel = &mut pixels[usize::from(column - first)];
             *pixel = key.max(*pixel);
         }
     }

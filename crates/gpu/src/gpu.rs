@@ -25,9 +25,6 @@ pub(crate) const WANTED: Features = Features::SHADER_INT64
     .union(Features::SHADER_INT64_ATOMIC_MIN_MAX)
     .union(Features::SHADER_INT64_ATOMIC_ALL_OPS)
     .union(Features::SHADER_EARLY_DEPTH_TEST)
-    .union(Features::TIMESTAMP_QUERY)
-    .union(Features::PIPELINE_STATISTICS_QUERY)
-    .union(Features::MAPPABLE_PRIMARY_BUFFERS)
     .union(Features::EXPERIMENTAL_MESH_SHADER);
 
 /// What may be used of what an adapter has.

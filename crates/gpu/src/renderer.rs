@@ -23,6 +23,9 @@ const FIRST_MIN: usize = 64;
 /// is hidden is neither drawn nor brought, and testing takes few turns.
 const LATER_SHARE: usize = 64;
 
+/// The most storage buffers that a shader sees at once: the default of WebGPU.
+const BUFFERS_MIN: u32 = 8;
+
 /// Draws spheres exactly, through wgpu.
 ///
 /// At each pixel the picture shows what [`Camera`](puncta_core::Camera) defines: the nearest point where its ray enters a
@@ -74,34 +77,15 @@ impl<R: Record> Renderer<R> for GpuRenderer {
     }
 
     fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
-        let indices = self.prepare(content, bricks)?;
-        self.clear_counts()?;
-        let mut close = Amount::default();
-        let (mut rest, first) = (indices, bricks.len().div_ceil(FIRST_SHARE).max(FIRST_MIN));
-        while !rest.is_empty() {
-            let count = match self.config.skipping {
-                Skipping::Nothing => rest.len(),
-                Skipping::Hidden => {
-                    if self.frame.as_ref().is_some_and(|frame| frame.has_drawn) {
-                        rest = survey::glance(self, &rest)?;
-                    }
-                    first.max(rest.len() / LATER_SHARE).min(rest.len())
-                }
-            };
-            let later = rest.split_off(count);
-            close += self.draw_round(content, &rest)?;
-            rest = later;
-        }
-        let counted = self.bench.counted(&self.gpu)?;
-        close += Amount { bricks: counted.bricks.into(), records: counted.records.into() };
-        Ok(close)
+        let drawn = self.draw_all(content, bricks);
+        self.keep_if_sound(drawn)
     }
 
     fn recall(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<u64, Error> {
         let Some(last) = self.last.take() else { return Ok(0) };
         let result = self.recall_from(&last, content, bricks);
         self.last = Some(last);
-        result
+        self.keep_if_sound(result)
     }
 
     fn forget(&mut self) {
@@ -117,7 +101,8 @@ impl<R: Record> Renderer<R> for GpuRenderer {
         left: &mut [VisibleBrick],
     ) -> Result<Option<u64>, Error> {
         self.prepare(content, left)?;
-        survey::survey(self, left).map(Some)
+        let open = survey::survey(self, left).map(Some);
+        self.keep_if_sound(open)
     }
 
     fn finish(&mut self, content: &Content<'_, R>) -> Result<Picture, Error> {
@@ -137,6 +122,15 @@ impl GpuRenderer {
     pub fn new(gpu: &Gpu, config: GpuConfig) -> Result<Self, Error> {
         let setup = config.setup.unwrap_or_else(|| suited(gpu));
         let fragment = config.fragment.unwrap_or(Fragment::Sphere);
+        let radius = config.radius_min_pixels;
+        if !(radius >= 0.0 && radius.is_finite()) {
+            return Err(Error::RadiusMin { pixels: radius });
+        }
+        let buffers = gpu.device.limits().max_storage_buffers_per_shader_stage;
+        if buffers < BUFFERS_MIN {
+            let what = format!("bind {BUFFERS_MIN} storage buffers at once, but {buffers}");
+            return Err(Error::Unsupported { adapter: gpu.name().to_owned(), what });
+        }
         let least = crate::store::RECORD_BYTES * u64::from(SEGMENT);
         if config.record_bytes < least {
             return Err(Error::Budget { bytes: config.record_bytes, least });
@@ -196,6 +190,45 @@ impl GpuRenderer {
     /// When no picture was begun, or the device fails.
     pub fn open_pixels(&mut self) -> Result<Vec<bool>, Error> {
         survey::open_pixels(self)
+    }
+
+    /// A picture that may be half drawn is given up: what it would say of itself could be wrong.
+    fn keep_if_sound<T>(&mut self, result: Result<T, Error>) -> Result<T, Error> {
+        if matches!(
+            result,
+            Err(Error::Lost { .. } | Error::OutOfMemory { .. } | Error::Refused { .. })
+        ) {
+            self.frame = None;
+        }
+        result
+    }
+
+    fn draw_all<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        bricks: &[VisibleBrick],
+    ) -> Result<Amount, Error> {
+        let indices = self.prepare(content, bricks)?;
+        self.clear_counts()?;
+        let mut close = Amount::default();
+        let (mut rest, first) = (indices, bricks.len().div_ceil(FIRST_SHARE).max(FIRST_MIN));
+        while !rest.is_empty() {
+            let count = match self.config.skipping {
+                Skipping::Nothing => rest.len(),
+                Skipping::Hidden => {
+                    if self.frame.as_ref().is_some_and(|frame| frame.has_drawn) {
+                        rest = survey::glance(self, &rest)?;
+                    }
+                    first.max(rest.len() / LATER_SHARE).min(rest.len())
+                }
+            };
+            let later = rest.split_off(count);
+            close += self.draw_round(content, &rest)?;
+            rest = later;
+        }
+        let counted = self.bench.counted(&self.gpu)?;
+        close += Amount { bricks: counted.bricks.into(), records: counted.records.into() };
+        Ok(close)
     }
 
     /// Checks what is to be drawn, and gets ready for it. Returns which bricks these are.

@@ -95,7 +95,9 @@ fn middle(brick: &Brick) -> Vec3 {
 /// Whether the GPU can draw all of a brick relative to its reference.
 pub(crate) fn is_plain(camera: &Camera, brick: &Brick) -> bool {
     let reference = middle(brick);
-    let extent = (brick.bounds.max - reference).as_dvec3().length();
+    // The middle is rounded, and may be nearer to one side than to the other.
+    let reach = |corner: Vec3| (corner.as_dvec3() - reference.as_dvec3()).abs();
+    let extent = reach(brick.bounds.min).max(reach(brick.bounds.max)).length();
     is_drawable(camera, camera.place(reference.as_dvec3()), (extent, brick.radius_max.into()))
 }
 
@@ -111,7 +113,8 @@ fn is_drawable(camera: &Camera, center: DVec3, (extent, radius): (f64, f64)) -> 
     let spread = if is_perspective { front } else { 1.0 };
     // A pixel of an oblique ray is that much smaller than one in the middle.
     let oblique = if is_perspective { 1.0 + (aside / front).length_squared() } else { 1.0 };
-    let pixels = oblique / (spread * camera.pixel_size());
+    let pixel = spread * camera.pixel_size();
+    let pixels = oblique / pixel;
     front >= DEPTH_RADII_MIN * radius
         && front - radius > camera.near() * (1.0 + 1e-5)
         && extent * pixels <= EXTENT_PIXELS_MAX
@@ -119,8 +122,7 @@ fn is_drawable(camera: &Camera, center: DVec3, (extent, radius): (f64, f64)) -> 
         && front >= SIZES[0]
         && center.length() <= SIZES[1]
         && (radius == 0.0 || radius >= SIZES[0])
-        && SIZES[0] <= camera.pixel_size()
-        && camera.pixel_size() <= SIZES[1]
+        && [camera.pixel_size(), pixel].iter().all(|size| (SIZES[0]..=SIZES[1]).contains(size))
 }
 
 #[cfg(test)]

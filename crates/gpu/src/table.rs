@@ -91,6 +91,11 @@ impl Table {
         u32::try_from(self.runs.len() - 1).unwrap_or(u32::MAX)
     }
 
+    /// How many runs are of single records.
+    pub(crate) const fn records(&self) -> usize {
+        self.runs.len() - self.of_bricks
+    }
+
     /// Forgets the runs of single records: what they were for is drawn.
     pub(crate) fn forget_records(&mut self) {
         self.runs.truncate(self.of_bricks);
