@@ -100,7 +100,7 @@ impl Away {
 
 /// A renderer's settings with room for so many records, and some to spare.
 pub(crate) fn roomy(records: u64, skipping: Skipping) -> GpuConfig {
-    GpuConfig { skipping, record_bytes: (records + 2048) * 20, ..GpuConfig::default() }
+    GpuConfig { skipping, record_bytes: (records + 2048) * 24, ..GpuConfig::default() }
 }
 
 /// Draws a whole picture.

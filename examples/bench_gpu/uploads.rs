@@ -28,7 +28,7 @@ use serde_json::{Value, json};
 use std::process::Command;
 
 /// The smallest budget that the renderer takes.
-const LEAST: u64 = 1024 * 20;
+const LEAST: u64 = 1024 * 24;
 
 /// What was measured of a way to bring so many particles.
 #[derive(Debug)]
@@ -125,7 +125,7 @@ fn subjects<'a>(
 ) -> Result<Vec<(&'static str, Subject<'a>)>> {
     let plain = |(name, way)| (name, Subject::Plain(desk, way));
     let mut subjects: Vec<_> = Way::all(gpu).map(plain).into();
-    let all = count as u64 * 20;
+    let all = count as u64 * 24;
     for (name, record_bytes) in
         [("puncta, a quarter fits", (all / 4).max(LEAST)), ("puncta, resident", u64::MAX)]
     {

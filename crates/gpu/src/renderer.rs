@@ -194,10 +194,7 @@ impl GpuRenderer {
 
     /// A picture that may be half drawn is given up: what it would say of itself could be wrong.
     fn keep_if_sound<T>(&mut self, result: Result<T, Error>) -> Result<T, Error> {
-        if matches!(
-            result,
-            Err(Error::Lost { .. } | Error::OutOfMemory { .. } | Error::Refused { .. })
-        ) {
+        if matches!(result, Err(Error::OutOfMemory { .. } | Error::Refused { .. })) {
             self.frame = None;
         }
         result
