@@ -94,7 +94,7 @@ impl Window {
         }
         let start = Instant::now();
         let input = open.input.take_egui_input(&open.window);
-        let output = self.context.run_ui(input, |ui| self.app.show(ui));
+        let mut output = self.context.run_ui(input, |ui| self.app.show(ui));
         open.input.handle_platform_output_with_event_loop(
             &open.window,
             events,
@@ -104,6 +104,8 @@ impl Window {
         self.app.note_work(start.elapsed());
         let is_painted =
             open.surface.paint(&shapes, &output.textures_delta, output.pixels_per_point);
+        // They were applied, whether or not there was a surface to paint on.
+        output.textures_delta.clear();
         let delay = output.viewport_output.get(&ViewportId::ROOT).map(|root| root.repaint_delay);
         open.due = delay.and_then(|delay| start.checked_add(delay));
         if !is_painted || delay.is_some_and(|delay| delay.is_zero()) {
