@@ -122,10 +122,11 @@ pub struct GpuConfig {
     /// Whether what is hidden is left out.
     pub skipping: Skipping,
     /// How many bytes of records are kept on the GPU: those of 24 bytes each that were drawn
-    /// last.
+    /// last. Beside them lie the picture, 64 bytes for each brick in play, and some tens of megabytes
+    /// for what is set up in a round.
     pub record_bytes: u64,
     /// The smallest radius that a sphere is drawn with, in pixels. 0, the default, is exact. With 0.71
-    /// each sphere covers at least one pixel's centre, so that none flickers when it moves.
+    /// each sphere covers at least one pixel's centre, so that none is lost.
     pub radius_min_pixels: f32,
 }
 

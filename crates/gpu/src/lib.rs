@@ -59,7 +59,7 @@ by the CPU and merged. Depths of a [`Picture`](puncta_core::Picture) are compute
 
 # What a device must have
 
-Nothing beyond the defaults of WebGPU. Words of 64 bits make drawing about twice as fast
+Nothing beyond the defaults of WebGPU. Where words of 64 bits can be written, nothing is drawn twice
 ([`Gpu::useful_features`]). A picture needs 8 bytes a pixel in one piece: a device that binds
 128 MiB at once draws 16 million pixels.
 
