@@ -9,18 +9,20 @@
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
 /// What each crate may use of the others, in its code and in its tests.
-const ARROWS: [(&str, &[&str]); 8] = [
+const ARROWS: [(&str, &[&str]); 9] = [
     ("puncta-core", &[]),
+    ("puncta-avc", &["puncta-core"]),
     ("puncta-io", &["puncta-core"]),
     ("puncta-grid", &["puncta-core"]),
     ("puncta-occlusion", &["puncta-core", "puncta-grid"]),
-    ("puncta-cpu", &["puncta-core", "puncta-grid", "puncta-occlusion"]),
-    ("puncta-gpu", &["puncta-core", "puncta-grid", "puncta-occlusion"]),
+    ("puncta-cpu", &["puncta-core", "puncta-avc", "puncta-grid", "puncta-occlusion"]),
+    ("puncta-gpu", &["puncta-core", "puncta-avc", "puncta-grid", "puncta-occlusion"]),
     ("puncta-viewer", &["puncta"]),
     (
         "puncta",
         &[
             "puncta-core",
+            "puncta-avc",
             "puncta-io",
             "puncta-grid",
             "puncta-occlusion",
@@ -33,7 +35,17 @@ const ARROWS: [(&str, &[&str]); 8] = [
 /// Crates that only some of ours may name.
 const RESERVED: [(&str, &[&str]); 3] = [
     ("memmap2", &["puncta-grid"]),
-    ("rayon", &["puncta-cpu", "puncta-gpu", "puncta-grid", "puncta-occlusion", "puncta-viewer"]),
+    (
+        "rayon",
+        &[
+            "puncta-avc",
+            "puncta-cpu",
+            "puncta-gpu",
+            "puncta-grid",
+            "puncta-occlusion",
+            "puncta-viewer",
+        ],
+    ),
     ("wgpu", &["puncta-gpu"]),
 ];
 

@@ -1,5 +1,6 @@
 #![doc = include_str!("../../README.md")]
 
+pub use puncta_avc as avc;
 pub use puncta_core as core;
 pub use puncta_cpu as cpu;
 #[cfg(feature = "gpu")]
@@ -8,6 +9,7 @@ pub use puncta_grid as grid;
 pub use puncta_io as io;
 pub use puncta_occlusion as occlusion;
 
+pub use puncta_avc::{Cuboid, Glyph, Glyphs};
 pub use puncta_core::{
     Amount, Bounds, Brick, Bricks, Budget, Content, Frame, Image, Live, NO_RECORD, Picture,
     Pipeline, Progress, Projection, Record, Renderer, Scene, Source, Sphere, Stage, Step, View,

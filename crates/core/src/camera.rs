@@ -124,6 +124,19 @@ impl Camera {
         DVec3::new(self.right.dot(offset), self.up.dot(offset), self.forward.dot(offset))
     }
 
+    /// The stored coordinates of the eye: the inverse of [`Camera::place`], of the origin.
+    #[must_use]
+    pub fn eye(&self) -> DVec3 {
+        let DVec3 { x, y, z } = -self.origin;
+        self.right * x + self.up * y + self.forward * z
+    }
+
+    /// The direction of the line of sight.
+    #[must_use]
+    pub const fn forward(&self) -> DVec3 {
+        self.forward
+    }
+
     /// The number of columns and rows.
     #[must_use]
     pub const fn size(&self) -> [u32; 2] {
