@@ -4,7 +4,7 @@ use crate::Sight;
 use bytemuck::Pod;
 use glam::Vec3;
 use puncta_core::{Column, Record};
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
 
 /// A small record that becomes a closed surface while it is drawn.
 ///
@@ -140,7 +140,6 @@ impl Faults {
 }
 
 /// What all glyphs of a scene share, and how finely they are drawn.
-#[derive(Clone, Debug, PartialEq)]
 pub struct Glyphs<G: Glyph> {
     /// Sizes, and what is selected.
     pub style: G::Style,
@@ -148,6 +147,28 @@ pub struct Glyphs<G: Glyph> {
     pub table: Column<u32>,
     /// How far a curved surface may be off, in pixels: see [`Sight`].
     pub tolerance: f32,
+}
+
+impl<G: Glyph> Clone for Glyphs<G> {
+    fn clone(&self) -> Self {
+        Self { style: self.style, table: self.table.clone(), tolerance: self.tolerance }
+    }
+}
+
+impl<G: Glyph> PartialEq for Glyphs<G> {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.style, &self.table, self.tolerance) == (&other.style, &other.table, other.tolerance)
+    }
+}
+
+impl<G: Glyph> Debug for Glyphs<G> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Glyphs")
+            .field("style", &self.style)
+            .field("table", &self.table.len())
+            .field("tolerance", &self.tolerance)
+            .finish()
+    }
 }
 
 /// A tolerance that nobody notices.

@@ -11,6 +11,7 @@ mod circle;
 mod cuboid;
 mod facet;
 mod glyph;
+mod holders;
 mod mesh;
 mod sight;
 mod surface;
@@ -20,6 +21,7 @@ pub use crate::{
     cuboid::Cuboid,
     facet::{DepthRow, Facet},
     glyph::{Cloud, Fault, Faults, Glyph, Glyphs, Size},
+    holders::Holders,
     mesh::Mesh,
     sight::{CHORDS_MAX, Lens, Sight},
     surface::{Meeting, Surface},

@@ -57,6 +57,12 @@ impl Surface {
         &self.facets
     }
 
+    /// The view depth of the nearest point where the ray of a pixel meets it.
+    #[must_use]
+    pub fn depth(&self, column: f64, row: f64) -> Option<f64> {
+        self.facets.iter().filter_map(|facet| facet.depth(column, row)).reduce(f64::min)
+    }
+
     /// The nearest point where the ray of a pixel meets it.
     #[must_use]
     pub fn meet(&self, lens: &Lens<'_>, column: f64, row: f64) -> Option<Meeting> {

@@ -3,28 +3,32 @@
 
 use crate::{
     Error, GpuRenderer, Skipping,
-    exact::Ball,
+    exact::Exact,
     kernel::Work,
     picture::{Frame, Key},
     residency::SEGMENT,
     round::{Batch, IS_COUNTED, IS_FIRST, IS_RECALLED, IS_TESTED, Piece, Stage},
-    runs::{Run, is_plain_sphere},
+    runs::Run,
+    shape::{Close, Near, Shape},
     store::Store,
-    table::{Known, bound_of_sphere},
+    table::Known,
 };
-use puncta_core::{Amount, Content, Record, VisibleBrick};
+use puncta_core::{Amount, Bounder, Brick, Content, Record, VisibleBrick};
 use std::ops::Range;
 
-/// The most records that are placed one by one, or drawn by the CPU, in a batch.
+/// The most records that are placed one by one in a batch, and the most work for the CPU.
 const SINGLE_MAX: usize = 1 << 17;
 
-impl GpuRenderer {
+impl<S> GpuRenderer<S> {
     /// Draws bricks that were learned; returns what was drawn of those that the GPU does not count.
     pub(crate) fn draw_round<R: Record>(
         &mut self,
         content: &Content<'_, R>,
         bricks: &[u32],
-    ) -> Result<Amount, Error> {
+    ) -> Result<Amount, Error>
+    where
+        S: Shape<R>,
+    {
         let mut close = Amount::default();
         let mut batch = Batch::new(self.store.as_ref().map_or(0, Store::pages));
         for &index in bricks {
@@ -56,10 +60,13 @@ impl GpuRenderer {
     fn add<R: Record>(
         &mut self,
         content: &Content<'_, R>,
-        batch: &mut Batch,
+        batch: &mut Batch<S::Exact>,
         (run, records): (u32, Range<u32>),
         mut flags: u32,
-    ) -> Result<(), Error> {
+    ) -> Result<(), Error>
+    where
+        S: Shape<R>,
+    {
         let mut first = records.start;
         while first < records.end {
             let segment = first / SEGMENT;
@@ -73,7 +80,7 @@ impl GpuRenderer {
                 self.flush(content, batch)?;
                 slot = self.take(segment, batch);
             }
-            let least = u64::from(SEGMENT) * crate::store::RECORD_BYTES;
+            let least = self.shape.layout().bytes();
             let none = Error::Budget { bytes: self.config.record_bytes, least };
             let (slot, store) = slot.zip(self.store.as_ref()).ok_or(none)?;
             let (page, start) = store.address(slot);
@@ -84,7 +91,7 @@ impl GpuRenderer {
         Ok(())
     }
 
-    pub(crate) fn take(&mut self, segment: u32, batch: &mut Batch) -> Option<u32> {
+    pub(crate) fn take<X>(&mut self, segment: u32, batch: &mut Batch<X>) -> Option<u32> {
         self.store.as_mut().and_then(|store| store.take(segment, self.round, &mut batch.missing))
     }
 
@@ -92,75 +99,76 @@ impl GpuRenderer {
     fn add_close<R: Record>(
         &mut self,
         content: &Content<'_, R>,
-        batch: &mut Batch,
+        batch: &mut Batch<S::Exact>,
         (brick, records): (u32, Range<u32>),
-    ) -> Result<(), Error> {
+    ) -> Result<(), Error>
+    where
+        S: Shape<R>,
+    {
         let Some(camera) = self.frame.as_ref().and_then(|frame| frame.camera.clone()) else {
             return Ok(());
         };
-        let least = f64::from(self.config.radius_min_pixels) * camera.pixel_size();
+        let Brick { bounds, radius_max, .. } = &content.bricks[brick as usize];
+        let bound = Bounder::new(&camera).bound(bounds, *radius_max);
         for index in records {
-            let record = &content.scene.records[index as usize];
-            let center = camera.place(record.position().as_dvec3());
-            let spread = if camera.is_perspective() { center.z } else { 1.0 };
-            let mut radius = f64::from(record.radius());
-            // Of no size means of no picture, whatever is made of small ones.
-            if radius > 0.0 {
-                radius = radius.max(least * spread);
-            }
-            // No ray enters a sphere that holds the eye.
-            if camera.is_perspective() && center.length() <= radius {
-                continue;
-            }
-            let Some(bound) = bound_of_sphere(&camera, center, radius) else { continue };
+            let near = Near { camera: &camera, scene: content.scene, index, brick: bound };
+            let close = self.shape.close(&near);
             if self.is_crowded(batch) {
                 self.flush(content, batch)?;
                 if let Some(frame) = &mut self.frame {
                     frame.table.forget_records();
                 }
             }
-            if is_plain_sphere(&camera, center, radius) {
-                let run = Run::new(&camera, (record.position(), center), &bound, brick);
-                let Some(frame) = &mut self.frame else { continue };
-                let run = frame.table.push(run);
-                let is_tested = frame.has_drawn && self.config.skipping == Skipping::Hidden;
-                let tested = if is_tested { IS_TESTED } else { 0 };
-                self.add(content, batch, (run, index..index + 1), tested)?;
-            } else {
-                let id = content.scene.id(index);
-                batch.balls.push(Ball { center, radius, bound, id });
+            match close {
+                Close::Nothing => {}
+                Close::Plain(reference, center, bound) => {
+                    let run = Run::new(&camera, (reference, center), &bound, brick);
+                    let Some(frame) = &mut self.frame else { continue };
+                    let run = frame.table.push(run);
+                    let is_tested = frame.has_drawn && self.config.skipping == Skipping::Hidden;
+                    let tested = if is_tested { IS_TESTED } else { 0 };
+                    self.add(content, batch, (run, index..index + 1), tested)?;
+                }
+                Close::Exact(exact) => {
+                    batch.weight += exact.weight();
+                    batch.exact.push(exact);
+                }
             }
         }
         Ok(())
     }
 
     /// Whether a batch holds as many single records as should go through together.
-    fn is_crowded(&self, batch: &Batch) -> bool {
+    fn is_crowded<X>(&self, batch: &Batch<X>) -> bool {
         let runs = self.frame.as_ref().map_or(0, |frame| frame.table.records());
-        runs >= SINGLE_MAX || batch.balls.len() >= SINGLE_MAX
+        runs >= SINGLE_MAX || batch.weight >= SINGLE_MAX
     }
 
     /// Draws a batch, and empties it.
     fn flush<R: Record>(
         &mut self,
         content: &Content<'_, R>,
-        batch: &mut Batch,
-    ) -> Result<(), Error> {
+        batch: &mut Batch<S::Exact>,
+    ) -> Result<(), Error>
+    where
+        S: Shape<R>,
+    {
         self.round += 1;
         if batch.is_empty() {
             batch.clear();
             return Ok(());
         }
-        let Self { gpu, kernels, raster, bench, ring, store, frame, config, .. } = self;
+        let Self { gpu, shape, kernels, bench, ring, store, frame, config, .. } = self;
         let (Some(store), Some(frame)) = (store, frame) else { return Ok(()) };
-        store.bring(gpu, ring, (content.scene, &batch.missing))?;
+        let pack = |range, words: &mut Vec<u32>| shape.pack(content.scene, range, words);
+        store.bring(gpu, ring, (content.scene, &batch.missing, &pack))?;
         let skipping = config.skipping;
         let seen = batch.seen.clone();
-        let mut stage = Stage { gpu, kernels, raster, bench, frame, skipping, seen };
-        stage.draw_exact(&batch.balls)?;
+        let mut stage = Stage { gpu, kernels, bench, frame, skipping, seen };
+        stage.draw_exact(&mut batch.exact)?;
         for (index, pieces) in batch.pieces.iter().enumerate().filter(|(_, p)| !p.is_empty()) {
             let page = store.page(gpu, index)?;
-            stage.draw_page(&page, pieces)?;
+            stage.draw_page(shape, (&page, pieces))?;
         }
         stage.frame.has_drawn = true;
         batch.clear();
@@ -173,7 +181,10 @@ impl GpuRenderer {
         last: &Frame,
         content: &Content<'_, R>,
         bricks: &[VisibleBrick],
-    ) -> Result<u64, Error> {
+    ) -> Result<u64, Error>
+    where
+        S: Shape<R>,
+    {
         if last.content.map(|key| key.bricks) != Some(Key::of(content).bricks) {
             return Ok(0);
         }

@@ -93,6 +93,14 @@ pub enum Error {
         /// What the device takes.
         limit: u64,
     },
+    /// What all glyphs share does not fit on the device.
+    #[error("what glyphs share needs {bytes} bytes in one piece; the GPU takes {limit}")]
+    TableTooLarge {
+        /// What it needs.
+        bytes: u64,
+        /// What the device takes.
+        limit: u64,
+    },
     /// A picture whose pixels do not make whole pixels of an image.
     #[error("a picture of {width} x {height} pixels cannot be averaged over {factor} x {factor}")]
     Supersample {

@@ -1,7 +1,7 @@
 /*!
-Spheres that `f32` cannot draw, drawn by the CPU in `f64`.
+What `f32` cannot draw, drawn by the CPU in `f64`.
 
-They are larger than some hundred pixels, nearer than their own size, or cut by the near plane: few.
+Such spheres and glyphs are larger than some hundred pixels, nearer than their own size, or cut by the near plane: few.
 What they show is made in one rectangle around them all, on all cores, and merged into the picture on
 the GPU.
 */
@@ -10,6 +10,18 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use puncta_core::{Camera, ScreenBound};
 use rayon::prelude::*;
+
+/// What the CPU draws of one record.
+pub(crate) trait Exact: Send + Sync {
+    /// The pixels that it may cover, and a depth before which it has no surface.
+    fn bound(&self) -> &ScreenBound;
+
+    /// How much memory and work it is, in spheres.
+    fn weight(&self) -> usize;
+
+    /// Draws a row into pixels, the first of which lies in a column.
+    fn draw_row(&self, camera: &Camera, row: usize, pixels: (u16, &mut [u64]));
+}
 
 /// A sphere in camera coordinates, and what bounds it.
 #[derive(Clone, Copy, Debug)]
@@ -28,18 +40,17 @@ pub(crate) struct Rectangle {
     pub(crate) size: [u32; 2],
 }
 
-/// The rectangle around balls, and its pixels: ids and depths, both inverted, as in the visibility
+/// The rectangle around items, and its pixels: ids and depths, both inverted, as in the visibility
 /// buffer.
-pub(crate) fn draw(camera: &Camera, balls: &[Ball]) -> Option<(Rectangle, Vec<u64>)> {
+pub(crate) fn draw<X: Exact>(camera: &Camera, items: &mut [X]) -> Option<(Rectangle, Vec<u64>)> {
     let around = |a: [u16; 2], b: [u16; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-    let all = balls.iter().map(|ball| ball.bound).reduce(|a, b| ScreenBound {
+    let all = items.iter().map(|item| *item.bound()).reduce(|a, b| ScreenBound {
         columns: around(a.columns, b.columns),
         rows: around(a.rows, b.rows),
         nearest: a.nearest.min(b.nearest),
     })?;
     // The nearest first: of the others, what they hide is not computed.
-    let mut balls = balls.to_vec();
-    balls.sort_by(|a, b| a.bound.nearest.total_cmp(&b.bound.nearest));
+    items.sort_by(|a, b| a.bound().nearest.total_cmp(&b.bound().nearest));
     let size = |[first, last]: [u16; 2]| u32::from(last - first) + 1;
     let rectangle = Rectangle {
         first: [all.columns[0].into(), all.rows[0].into()],
@@ -49,32 +60,45 @@ pub(crate) fn draw(camera: &Camera, balls: &[Ball]) -> Option<(Rectangle, Vec<u6
     let mut pixels = vec![0_u64; width * rectangle.size[1] as usize];
     pixels.par_chunks_mut(width).enumerate().for_each(|(row, pixels)| {
         let row = row + usize::from(all.rows[0]);
-        for ball in &balls {
-            let [top, bottom] = ball.bound.rows.map(usize::from);
+        for item in &*items {
+            let [top, bottom] = item.bound().rows.map(usize::from);
             if (top..=bottom).contains(&row) {
-                draw_row(camera, ball, row, (all.columns[0], pixels));
+                item.draw_row(camera, row, (all.columns[0], pixels));
             }
         }
     });
     Some((rectangle, pixels))
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
-fn draw_row(camera: &Camera, ball: &Ball, row: usize, (first, pixels): (u16, &mut [u64])) {
-    // Words before this one are nearer than any of the ball.
-    let nearest = !ball.bound.nearest.max(0.0).to_bits();
-    for column in ball.bound.columns[0]..=ball.bound.columns[1] {
-        let pixel = &mut pixels[usize::from(column - first)];
-        if *pixel >> 32 > u64::from(nearest) {
-            continue;
-        }
-        let ray = camera.ray(column.into(), row as f64);
-        let depth = camera.depth(ray, ball.center, ball.radius).map(|depth| depth as f32);
-        if let Some(depth) = depth.filter(|depth| depth.is_finite()) {
-            let key = u64::from(!depth.to_bits()) << 32 | u64::from(!ball.id);
-            *pixel = key.max(*pixel);
+impl Exact for Ball {
+    fn bound(&self) -> &ScreenBound {
+        &self.bound
+    }
+
+    fn weight(&self) -> usize {
+        1
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+    fn draw_row(&self, camera: &Camera, row: usize, (first, pixels): (u16, &mut [u64])) {
+        // Words before this one are nearer than any of the ball.
+        let nearest = !self.bound.nearest.max(0.0).to_bits();
+        for column in self.bound.columns[0]..=self.bound.columns[1] {
+            let pixel = &mut pixels[usize::from(column - first)];
+            if *pixel >> 32 > u64::from(nearest) {
+                continue;
+            }
+            let ray = camera.ray(column.into(), row as f64);
+            if let Some(depth) = camera.depth(ray, self.center, self.radius) {
+                *pixel = key(depth as f32, self.id).max(*pixel);
+            }
         }
     }
+}
+
+/// The word of a pixel; 0, which is nothing, for a depth that is not finite.
+pub(crate) fn key(depth: f32, id: u32) -> u64 {
+    if depth.is_finite() { u64::from(!depth.to_bits()) << 32 | u64::from(!id) } else { 0 }
 }
 
 #[cfg(test)]
@@ -91,14 +115,14 @@ mod tests {
 
     /// What a pixel of a picture shows of some balls, as a key.
     #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
-    fn key(camera: &Camera, balls: &[Ball], [column, row]: [u32; 2]) -> u64 {
+    fn shown_by(camera: &Camera, balls: &[Ball], [column, row]: [u32; 2]) -> u64 {
         let ray = camera.ray(column.into(), row.into());
         let hits = balls.iter().filter_map(|ball| {
             let depth = camera.depth(ray, ball.center, ball.radius)? as f32;
             depth.is_finite().then_some((depth, ball.id))
         });
         let nearest = hits.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        nearest.map_or(0, |(depth, id)| u64::from(!depth.to_bits()) << 32 | u64::from(!id))
+        nearest.map_or(0, |(depth, id)| key(depth, id))
     }
 
     proptest! {
@@ -122,8 +146,8 @@ mod tests {
                 let bound = bound_of_sphere(&camera, center, radius)?;
                 Some(Ball { center, radius, bound, id })
             };
-            let balls: Vec<Ball> = balls.into_iter().filter_map(ball).collect();
-            let drawn = draw(&camera, &balls);
+            let mut balls: Vec<Ball> = balls.into_iter().filter_map(ball).collect();
+            let drawn = draw(&camera, &mut balls);
             prop_assert_eq!(drawn.is_some(), !balls.is_empty());
             for (row, column) in (0_u32..23).flat_map(|row| (0_u32..37).map(move |column| (row, column))) {
                 let shown = drawn.as_ref().map_or(0, |(rectangle, pixels)| {
@@ -132,7 +156,7 @@ mod tests {
                     let is_in = x < rectangle.size[0] && y < rectangle.size[1];
                     if is_in { pixels[(y * rectangle.size[0] + x) as usize] } else { 0 }
                 });
-                prop_assert_eq!(shown, key(&camera, &balls, [column, row]));
+                prop_assert_eq!(shown, shown_by(&camera, &balls, [column, row]));
             }
         }
     }

@@ -11,12 +11,10 @@ use crate::{Error, GpuRenderer, kernel::read, picture::Frame, survey::words};
 use puncta_core::{Content, NO_RECORD, Picture, Record};
 use rayon::prelude::*;
 
-/// The picture of what was drawn; with `radius_min`, exact depths of spheres of at least so many
-/// pixels.
-pub(crate) fn finish<R: Record>(
-    renderer: &mut GpuRenderer,
+/// The picture of what was drawn, with the depths that the GPU found.
+pub(crate) fn finish<R: Record, S>(
+    renderer: &mut GpuRenderer<S>,
     content: &Content<'_, R>,
-    radius_min: Option<f32>,
 ) -> Result<Picture, Error> {
     let GpuRenderer { gpu, bench, frame, .. } = renderer;
     let frame = frame.as_ref().ok_or(puncta_core::Error::NotBegun)?;
@@ -32,36 +30,16 @@ pub(crate) fn finish<R: Record>(
     };
     let width = view.width() as usize;
     let rows = picture.id.par_chunks_mut(width).zip(picture.depth.par_chunks_mut(width));
-    rows.zip(keys.par_chunks(2 * width)).enumerate().for_each(|(row, ((ids, depths), keys))| {
+    rows.zip(keys.par_chunks(2 * width)).for_each(|((ids, depths), keys)| {
         let mut known = (NO_RECORD, NO_RECORD);
         for (column, key) in keys.chunks(2).enumerate().filter(|(_, key)| key[1] != 0) {
             if known.0 != !key[0] {
                 known = (!key[0], places.find(!key[0]));
             }
-            ids[column] = known.1;
-            let depth = f32::from_bits(!key[1]);
-            depths[column] =
-                exact(frame, content, (column, row, known.1), radius_min).unwrap_or(depth);
+            (ids[column], depths[column]) = (known.1, f32::from_bits(!key[1]));
         }
     });
     Ok(picture)
-}
-
-/// The view depth at which a record is seen, in `f64`, rounded.
-#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
-fn exact<R: Record>(
-    frame: &Frame,
-    content: &Content<'_, R>,
-    (column, row, index): (usize, usize, u32),
-    radius_min: Option<f32>,
-) -> Option<f32> {
-    let (camera, radius_min) = (frame.camera.as_ref()?, radius_min?);
-    let record = content.scene.records.get(index as usize)?;
-    let center = camera.place(record.position().as_dvec3());
-    let spread = if camera.is_perspective() { center.z } else { 1.0 };
-    let least = f64::from(radius_min) * camera.pixel_size() * spread;
-    let ray = camera.ray(column as f64, row as f64);
-    camera.depth(ray, center, f64::from(record.radius()).max(least)).map(|depth| depth as f32)
 }
 
 /// Where the records of some ids lie.

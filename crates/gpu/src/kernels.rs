@@ -1,9 +1,8 @@
-//! All compute shaders but those that draw.
+//! The compute shaders that do not know what records are drawn as.
 
 use crate::{
-    Error, Fragment, Gpu, Setup,
+    Error, Gpu,
     kernel::{Kernel, shader},
-    raster::vertices,
 };
 
 /// The kernels, by what they do.
@@ -12,9 +11,6 @@ pub(crate) struct Kernels {
     pub(crate) tiles: Kernel,
     pub(crate) cull: Kernel,
     pub(crate) over_chunks: Kernel,
-    pub(crate) set_up: Kernel,
-    pub(crate) recall: Kernel,
-    pub(crate) over_discs: Kernel,
     pub(crate) mark_seen: Kernel,
     pub(crate) claim: Kernel,
     pub(crate) accept: Kernel,
@@ -27,8 +23,8 @@ pub(crate) struct Kernels {
 
 const TILES: &str = shader!("camera", "visibility_read", "tiles");
 pub(crate) const CULL: &str = shader!("camera", "disc", "work", "place", "cull");
-const SET_UP: &str = shader!("camera", "disc", "work", "place", "setup", "recall");
-const ARGUMENTS: &str = shader!("work", "arguments");
+pub(crate) const SET_UP: &str = shader!("camera", "disc", "work", "place", "setup", "recall");
+pub(crate) const ARGUMENTS: &str = shader!("work", "arguments");
 const SEEN: &str = shader!("camera", "visibility_read", "seen");
 const CLAIM: &str = shader!("camera", "claim");
 pub(crate) const PATCH: &str = shader!("camera", "patch");
@@ -49,26 +45,13 @@ pub(crate) const SOURCES: [(&str, &str); 8] = [
 ];
 
 impl Kernels {
-    pub(crate) fn new(gpu: &Gpu, setup: Setup, fragment: Fragment) -> Result<Self, Error> {
-        let (vertices, is_instanced) = vertices(setup, fragment);
-        let drawing = [
-            ("vertices", f64::from(vertices)),
-            ("is_instanced", f64::from(u8::from(is_instanced))),
-        ];
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, Error> {
         gpu.guard("pipelines", || {
             let kernel = |label, source, entry| Kernel::new(gpu, label, (source, entry), &[]);
             Self {
                 tiles: kernel("Kernels::tiles", TILES, "find_tiles"),
                 cull: kernel("Kernels::cull", CULL, "cull"),
                 over_chunks: kernel("Kernels::over_chunks", ARGUMENTS, "over_chunks"),
-                set_up: kernel("Kernels::set_up", SET_UP, "set_up"),
-                recall: kernel("Kernels::recall", SET_UP, "recall"),
-                over_discs: Kernel::new(
-                    gpu,
-                    "Kernels::over_discs",
-                    (ARGUMENTS, "over_discs"),
-                    &drawing,
-                ),
                 mark_seen: kernel("Kernels::mark_seen", SEEN, "mark_seen"),
                 claim: kernel("Kernels::claim", CLAIM, "claim"),
                 accept: kernel("Kernels::accept", CLAIM, "accept"),

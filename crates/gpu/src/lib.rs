@@ -93,6 +93,9 @@ mod shade_pass;
 mod shaded;
 #[cfg(test)]
 mod shaders;
+mod shape;
+mod solids;
+mod spheres;
 mod store;
 mod survey;
 mod table;
@@ -107,5 +110,7 @@ pub use crate::{
     renderer::GpuRenderer,
     shade::ShadeConfig,
     shaded::Shaded,
+    solids::Solids,
+    spheres::Spheres,
 };
 pub use wgpu;

@@ -1,17 +1,17 @@
 //! The renderer: what is drawn, what is left out, and what is still open.
 
 use crate::{
-    Error, Fragment, Gpu, GpuConfig, Setup, Skipping, finish,
+    Error, Fragment, Gpu, GpuConfig, Setup, Skipping, Solids, Spheres, finish,
     kernel::Work,
     kernels::Kernels,
     picture::Frame,
-    raster::Raster,
-    residency::SEGMENT,
     round::Bench,
     shade_pass::Shading,
+    shape::{Draw, Shape},
     store::{Ring, Store},
     survey,
 };
+use puncta_avc::{Glyph, Glyphs};
 use puncta_core::{Amount, Content, Picture, Record, Renderer, View, VisibleBrick};
 
 /// The share of the bricks that are drawn before those that are left are tested for the first time, and
@@ -26,10 +26,10 @@ const LATER_SHARE: usize = 64;
 /// The most storage buffers that a shader sees at once: the default of WebGPU.
 const BUFFERS_MIN: u32 = 8;
 
-/// Draws spheres exactly, through wgpu.
+/// Draws spheres, or glyphs, exactly, through wgpu.
 ///
 /// At each pixel the picture shows what [`Camera`](puncta_core::Camera) defines: the nearest point where its ray enters a
-/// sphere, at a view depth of at least [`View::near`]; of equal depths the one with the lower
+/// sphere or the triangles of a glyph, at a view depth of at least [`View::near`]; of equal depths the one with the lower
 /// [`puncta_core::Scene::id`]. It does not depend on the order of drawing, on [`Setup`], or on what
 /// was left out because it is hidden.
 ///
@@ -39,13 +39,11 @@ const BUFFERS_MIN: u32 = 8;
 ///
 /// See the [crate's page](crate).
 #[derive(Debug)]
-pub struct GpuRenderer {
+pub struct GpuRenderer<S = Spheres> {
     pub(crate) gpu: Gpu,
     pub(crate) config: GpuConfig,
-    setup: Setup,
-    fragment: Fragment,
+    pub(crate) shape: S,
     pub(crate) kernels: Kernels,
-    pub(crate) raster: Raster,
     pub(crate) bench: Bench,
     pub(crate) ring: Ring,
     pub(crate) store: Option<Store>,
@@ -57,10 +55,162 @@ pub struct GpuRenderer {
     pub(crate) shading: Option<Shading>,
 }
 
-impl<R: Record> Renderer<R> for GpuRenderer {
-    type Error = Error;
+/// The renderer of one shape: all the same.
+macro_rules! renderer {
+    ([$($generics:tt)+] $record:ty, $shape:ty) => {
+        impl<$($generics)+> Renderer<$record> for GpuRenderer<$shape> {
+            type Error = Error;
 
-    fn begin(&mut self, view: &View) -> Result<(), Error> {
+            fn begin(&mut self, view: &View) -> Result<(), Error> {
+                self.begin_picture(view)
+            }
+
+            fn draw(
+                &mut self,
+                content: &Content<'_, $record>,
+                bricks: &[VisibleBrick],
+            ) -> Result<Amount, Error> {
+                let drawn = self.draw_all(content, bricks);
+                self.keep_if_sound(drawn)
+            }
+
+            fn recall(
+                &mut self,
+                content: &Content<'_, $record>,
+                bricks: &[VisibleBrick],
+            ) -> Result<u64, Error> {
+                let Some(last) = self.last.take() else { return Ok(0) };
+                let result = self.recall_from(&last, content, bricks);
+                self.last = Some(last);
+                self.keep_if_sound(result)
+            }
+
+            fn forget(&mut self) {
+                self.last = None;
+                if let Some(frame) = &mut self.frame {
+                    frame.has_drawn = false;
+                }
+            }
+
+            fn survey(
+                &mut self,
+                content: &Content<'_, $record>,
+                left: &mut [VisibleBrick],
+            ) -> Result<Option<u64>, Error> {
+                self.prepare(content, left)?;
+                let open = survey::survey(self, left).map(Some);
+                self.keep_if_sound(open)
+            }
+
+            fn finish(&mut self, content: &Content<'_, $record>) -> Result<Picture, Error> {
+                let mut picture = finish::finish(self, content)?;
+                if let Some(camera) = self.frame.as_ref().and_then(|frame| frame.camera.as_ref()) {
+                    self.shape.refine(camera, content, &mut picture);
+                }
+                Ok(picture)
+            }
+        }
+    };
+}
+
+renderer!([R: Record] R, Spheres);
+renderer!([G: Glyph] G, Solids<G>);
+
+impl GpuRenderer {
+    /// A renderer of spheres on this device.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unsupported`] when the device cannot do what `config` names, [`Error::Budget`], or what
+    /// the device reports.
+    pub fn new(gpu: &Gpu, config: GpuConfig) -> Result<Self, Error> {
+        let radius = config.radius_min_pixels;
+        if !(radius >= 0.0 && radius.is_finite()) {
+            return Err(Error::RadiusMin { pixels: radius });
+        }
+        check_buffers(gpu)?;
+        let shape = Spheres::new(gpu, &config)?;
+        Self::with_shape(gpu, config, shape)
+    }
+
+    /// How spheres become fragments.
+    #[must_use]
+    pub const fn setup(&self) -> Setup {
+        self.shape.setup
+    }
+
+    /// What fragments do.
+    #[must_use]
+    pub const fn fragment(&self) -> Fragment {
+        self.shape.fragment
+    }
+}
+
+impl<G: Glyph> GpuRenderer<Solids<G>> {
+    /// A renderer of these glyphs on this device. Of `config`, what concerns spheres is not used.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Budget`], or what the device reports.
+    pub fn of(gpu: &Gpu, glyphs: Glyphs<G>, config: GpuConfig) -> Result<Self, Error> {
+        check_buffers(gpu)?;
+        let shape = Solids::new(gpu, glyphs)?;
+        Self::with_shape(gpu, config, shape)
+    }
+
+    /// The glyphs.
+    #[must_use]
+    pub const fn glyphs(&self) -> &Glyphs<G> {
+        &self.shape.glyphs
+    }
+
+    /// The glyphs, to change what all of them share for the next picture: records stay where they are.
+    ///
+    /// A picture that is half done must not see other glyphs: begin another one.
+    #[must_use]
+    pub const fn glyphs_mut(&mut self) -> &mut Glyphs<G> {
+        &mut self.shape.glyphs
+    }
+}
+
+/// Whether a shader of this device sees as many buffers as drawing needs.
+fn check_buffers(gpu: &Gpu) -> Result<(), Error> {
+    let buffers = gpu.device.limits().max_storage_buffers_per_shader_stage;
+    if buffers < BUFFERS_MIN {
+        let what = format!("bind {BUFFERS_MIN} storage buffers at once, but {buffers}");
+        return Err(Error::Unsupported { adapter: gpu.name().to_owned(), what });
+    }
+    Ok(())
+}
+
+impl<S> GpuRenderer<S> {
+    fn with_shape(gpu: &Gpu, config: GpuConfig, shape: S) -> Result<Self, Error>
+    where
+        S: Draw,
+    {
+        let least = shape.layout().bytes();
+        if config.record_bytes < least {
+            return Err(Error::Budget { bytes: config.record_bytes, least });
+        }
+        Ok(Self {
+            kernels: Kernels::new(gpu)?,
+            bench: Bench::new(gpu)?,
+            gpu: gpu.clone(),
+            config,
+            shape,
+            ring: Ring::default(),
+            store: None,
+            frame: None,
+            last: None,
+            round: 0,
+            shading: None,
+        })
+    }
+
+    fn begin_picture(&mut self, view: &View) -> Result<(), Error>
+    where
+        S: Draw,
+    {
         self.gpu.check()?;
         // A picture of nothing is no reason to forget the one before.
         if self.frame.as_ref().is_some_and(|frame| frame.has_drawn) {
@@ -71,97 +221,9 @@ impl<R: Record> Renderer<R> for GpuRenderer {
             Some(frame) => frame,
             None => Frame::new(&self.gpu, view)?,
         };
-        frame.restart(&self.gpu, view, self.config.radius_min_pixels)?;
+        frame.restart(&self.gpu, view, self.shape.radius_min())?;
         self.frame = Some(frame);
         Ok(())
-    }
-
-    fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
-        let drawn = self.draw_all(content, bricks);
-        self.keep_if_sound(drawn)
-    }
-
-    fn recall(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<u64, Error> {
-        let Some(last) = self.last.take() else { return Ok(0) };
-        let result = self.recall_from(&last, content, bricks);
-        self.last = Some(last);
-        self.keep_if_sound(result)
-    }
-
-    fn forget(&mut self) {
-        self.last = None;
-        if let Some(frame) = &mut self.frame {
-            frame.has_drawn = false;
-        }
-    }
-
-    fn survey(
-        &mut self,
-        content: &Content<'_, R>,
-        left: &mut [VisibleBrick],
-    ) -> Result<Option<u64>, Error> {
-        self.prepare(content, left)?;
-        let open = survey::survey(self, left).map(Some);
-        self.keep_if_sound(open)
-    }
-
-    fn finish(&mut self, content: &Content<'_, R>) -> Result<Picture, Error> {
-        let radius_min = self.config.radius_min_pixels;
-        let is_exact = self.fragment.is_exact();
-        finish::finish(self, content, is_exact.then_some(radius_min))
-    }
-}
-
-impl GpuRenderer {
-    /// A renderer on this device.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Unsupported`] when the device cannot do what `config` names, [`Error::Budget`], or what
-    /// the device reports.
-    pub fn new(gpu: &Gpu, config: GpuConfig) -> Result<Self, Error> {
-        let setup = config.setup.unwrap_or_else(|| suited(gpu));
-        let fragment = config.fragment.unwrap_or(Fragment::Sphere);
-        let radius = config.radius_min_pixels;
-        if !(radius >= 0.0 && radius.is_finite()) {
-            return Err(Error::RadiusMin { pixels: radius });
-        }
-        let buffers = gpu.device.limits().max_storage_buffers_per_shader_stage;
-        if buffers < BUFFERS_MIN {
-            let what = format!("bind {BUFFERS_MIN} storage buffers at once, but {buffers}");
-            return Err(Error::Unsupported { adapter: gpu.name().to_owned(), what });
-        }
-        let least = crate::store::RECORD_BYTES * u64::from(SEGMENT);
-        if config.record_bytes < least {
-            return Err(Error::Budget { bytes: config.record_bytes, least });
-        }
-        Ok(Self {
-            kernels: Kernels::new(gpu, setup, fragment)?,
-            raster: Raster::new(gpu, setup, fragment)?,
-            bench: Bench::new(gpu)?,
-            gpu: gpu.clone(),
-            config,
-            setup,
-            fragment,
-            ring: Ring::default(),
-            store: None,
-            frame: None,
-            last: None,
-            round: 0,
-            shading: None,
-        })
-    }
-
-    /// How spheres become fragments.
-    #[must_use]
-    pub const fn setup(&self) -> Setup {
-        self.setup
-    }
-
-    /// What fragments do.
-    #[must_use]
-    pub const fn fragment(&self) -> Fragment {
-        self.fragment
     }
 
     /// The device.
@@ -204,7 +266,10 @@ impl GpuRenderer {
         &mut self,
         content: &Content<'_, R>,
         bricks: &[VisibleBrick],
-    ) -> Result<Amount, Error> {
+    ) -> Result<Amount, Error>
+    where
+        S: Shape<R>,
+    {
         let indices = self.prepare(content, bricks)?;
         self.clear_counts()?;
         let mut close = Amount::default();
@@ -233,18 +298,23 @@ impl GpuRenderer {
         &mut self,
         content: &Content<'_, R>,
         bricks: &[VisibleBrick],
-    ) -> Result<Vec<u32>, Error> {
+    ) -> Result<Vec<u32>, Error>
+    where
+        S: Shape<R>,
+    {
         self.gpu.check()?;
         let frame = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
         content.validate(bricks)?;
         frame.prepare(&self.gpu, content)?;
         if self.store.as_ref().is_none_or(|store| !store.is_of(content.scene)) {
             self.store = None;
-            self.store = Some(Store::new(&self.gpu, content.scene, self.config.record_bytes)?);
+            let room = (self.shape.layout(), self.config.record_bytes);
+            self.store = Some(Store::new(&self.gpu, content.scene, room)?);
         }
         let indices: Vec<u32> = bricks.iter().map(VisibleBrick::index).collect();
         if let Some(camera) = &frame.camera {
-            let camera = (camera, self.config.radius_min_pixels);
+            self.shape.prepare(&self.gpu, camera)?;
+            let camera = (camera, self.shape.radius_min());
             frame.table.learn(content, camera, &indices);
         }
         Ok(indices)
@@ -257,9 +327,4 @@ impl GpuRenderer {
             work.submit();
         })
     }
-}
-
-/// The set-up that suits a device.
-fn suited(gpu: &Gpu) -> Setup {
-    if gpu.is_wide() { Setup::Compute } else { Setup::Triangle }
 }

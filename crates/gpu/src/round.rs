@@ -4,20 +4,21 @@ Rounds: some pieces of bricks go through the GPU together.
 1. Segments of records that are missing are brought (`store.rs`).
 2. Tiles of the picture are looked at anew, if anything was drawn since (`tiles.wgsl`).
 3. Pieces of hidden bricks are dropped, the others cut into chunks (`cull.wgsl`).
-4. Records become discs; those that cover no pixel's centre or are hidden are dropped (`setup.wgsl`).
-5. Discs become pixels (`raster.rs`).
+4. Chunks are drawn as what their records are: spheres become discs (`setup.wgsl`), and these pixels
+   (`raster.rs`); glyphs become triangles, and these pixels (`glyph.wgsl`). What is hidden or covers no
+   pixel's centre is dropped first.
 
 Nothing comes back in between: each step leaves what it counted as arguments of the next.
 */
 
 use crate::{
     Error, Gpu, Skipping,
-    exact::{self, Ball},
+    exact::{self, Exact},
     frame::tiles,
     kernel::{Pool, Work, uniform},
     kernels::Kernels,
     picture::Frame,
-    raster::{Canvas, Raster},
+    shape::{Draw, Place},
     store::Page,
 };
 use bytemuck::{Pod, Zeroable};
@@ -72,31 +73,41 @@ pub(crate) struct Counts {
 }
 
 /// What goes through together: pieces by page, and what must be brought or drawn by the CPU first.
-#[derive(Debug, Default)]
-pub(crate) struct Batch {
+#[derive(Debug)]
+pub(crate) struct Batch<X> {
     pub(crate) pieces: Vec<Vec<Piece>>,
     pub(crate) missing: Vec<(u32, u32)>,
-    pub(crate) balls: Vec<Ball>,
+    pub(crate) exact: Vec<X>,
+    /// How large what the CPU draws is, all in all.
+    pub(crate) weight: usize,
     /// The set of seen ids, and the bricks drawn in the picture before, if only these are drawn.
     pub(crate) seen: Option<(wgpu::Buffer, wgpu::Buffer)>,
     pub(crate) records: u32,
     pub(crate) chunks: u32,
 }
 
-impl Batch {
+impl<X> Batch<X> {
     pub(crate) fn new(pages: usize) -> Self {
-        Self { pieces: vec![Vec::new(); pages], ..Self::default() }
+        Self {
+            pieces: vec![Vec::new(); pages],
+            missing: Vec::new(),
+            exact: Vec::new(),
+            weight: 0,
+            seen: None,
+            records: 0,
+            chunks: 0,
+        }
     }
 
     pub(crate) fn clear(&mut self) {
         self.pieces.iter_mut().for_each(Vec::clear);
         self.missing.clear();
-        self.balls.clear();
-        (self.records, self.chunks) = (0, 0);
+        self.exact.clear();
+        (self.records, self.chunks, self.weight) = (0, 0, 0);
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.records == 0 && self.balls.is_empty()
+        self.records == 0 && self.exact.is_empty()
     }
 
     /// Whether these many records more would be too many.
@@ -117,8 +128,9 @@ pub(crate) struct Bench {
     pub(crate) pool: Pool,
     pub(crate) counts: wgpu::Buffer,
     pub(crate) arguments: wgpu::Buffer,
-    round: wgpu::Buffer,
-    second: wgpu::Buffer,
+    pub(crate) blocks: wgpu::Buffer,
+    pub(crate) round: wgpu::Buffer,
+    pub(crate) second: wgpu::Buffer,
     patch: wgpu::Buffer,
 }
 
@@ -129,6 +141,7 @@ impl Bench {
             pool: Pool::default(),
             counts: crate::kernel::storage(gpu, "Bench::counts", size_of::<Counts>() as u64)?,
             arguments: crate::kernel::storage(gpu, "Bench::arguments", 64)?,
+            blocks: crate::kernel::storage(gpu, "Bench::blocks", 64)?,
             round: round("Bench::round")?,
             second: round("Bench::second")?,
             patch: round("Bench::patch")?,
@@ -153,7 +166,6 @@ impl Bench {
 pub(crate) struct Stage<'a> {
     pub(crate) gpu: &'a Gpu,
     pub(crate) kernels: &'a Kernels,
-    pub(crate) raster: &'a Raster,
     pub(crate) bench: &'a mut Bench,
     pub(crate) frame: &'a mut Frame,
     pub(crate) skipping: Skipping,
@@ -183,15 +195,19 @@ impl Stage<'_> {
     }
 
     /// Draws pieces that lie in one page.
-    pub(crate) fn draw_page(&mut self, page: &Page, pieces: &[Piece]) -> Result<(), Error> {
-        let (gpu, small) = (self.gpu, self.raster.small(self.gpu));
+    pub(crate) fn draw_page(
+        &mut self,
+        shape: &dyn Draw,
+        (page, pieces): (&Page, &[Piece]),
+    ) -> Result<(), Error> {
+        let (gpu, small) = (self.gpu, shape.small(self.gpu));
         let capacity: u32 = pieces.iter().map(|piece| piece.count).sum();
         let chunks: u32 = pieces.iter().map(|piece| piece.count.div_ceil(CHUNK)).sum();
         let runs = self.frame.table.buffer(gpu)?;
         let pool = &mut self.bench.pool;
         let list = pool.filled(gpu, "Round::pieces", pieces)?;
         let cut = pool.storage(gpu, "Round::chunks", u64::from(chunks) * CHUNK_BYTES)?;
-        let discs = pool.storage(gpu, "Round::discs", u64::from(capacity) * DISC_BYTES)?;
+        let scratch = shape.scratch(gpu, pool, capacity)?;
         let count = u32::try_from(pieces.len()).unwrap_or(u32::MAX);
         let data = RoundData { pieces: count, capacity, small, pass_of_two: 0 };
         gpu.queue.write_buffer(&self.bench.round, 0, bytemuck::bytes_of(&data));
@@ -219,64 +235,25 @@ impl Stage<'_> {
             let counted =
                 [(7, bench.counts.as_entire_binding()), (11, bench.arguments.as_entire_binding())];
             kernels.over_chunks.run_once(&mut work, &counted);
-            let mut bindings = vec![
-                (0, frame.target.camera.as_entire_binding()),
-                (1, runs.as_entire_binding()),
-                (2, bench.round.as_entire_binding()),
-                (3, page.spheres.as_entire_binding()),
-                (4, page.ids.as_entire_binding()),
-                (5, cut.as_entire_binding()),
-                (6, discs.as_entire_binding()),
-                (7, bench.counts.as_entire_binding()),
-                (8, frame.target.tiles.as_entire_binding()),
-            ];
-            let set_up = match &self.seen {
-                Some((seen, _)) => {
-                    bindings.push((10, seen.as_entire_binding()));
-                    &kernels.recall
-                }
-                None => &kernels.set_up,
+            let place = Place {
+                bench,
+                runs: &runs,
+                page,
+                chunks: &cut,
+                scratch: &scratch,
+                seen: self.seen.as_ref().map(|(seen, _)| seen),
+                claim: &kernels.claim,
             };
-            set_up.run_indirect(&mut work, &bindings, (&bench.arguments, 0));
-            kernels.over_discs.run_once(&mut work, &counted);
-            self.draw_discs(&mut work, &discs);
+            shape.draw(&mut work, &place, frame);
+            frame.are_tiles_fresh = false;
             work.submit();
         })
     }
 
-    /// Draws the discs that were made, once or twice.
-    fn draw_discs(&mut self, work: &mut Work<'_>, discs: &wgpu::Buffer) {
-        let (frame, bench) = (&mut *self.frame, &*self.bench);
-        let target = &frame.target;
-        let mut canvas = Canvas {
-            camera: &target.camera,
-            round: &bench.round,
-            discs,
-            counts: &bench.counts,
-            arguments: &bench.arguments,
-            visibility: &target.visibility,
-            depth: &target.depth,
-        };
-        let is_kept = std::mem::replace(&mut frame.has_depth, true);
-        let load = if is_kept { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) };
-        self.raster.draw(work, &canvas, load);
-        if let Some(known) = &target.known {
-            let bindings = [
-                (0, target.camera.as_entire_binding()),
-                (9, target.visibility.as_entire_binding()),
-                (10, known.as_entire_binding()),
-            ];
-            self.kernels.claim.run(work, &bindings, target.pixels());
-            canvas.round = &bench.second;
-            self.raster.draw(work, &canvas, wgpu::LoadOp::Load);
-        }
-        frame.are_tiles_fresh = false;
-    }
-
     /// Draws what `f32` cannot.
-    pub(crate) fn draw_exact(&mut self, balls: &[Ball]) -> Result<(), Error> {
+    pub(crate) fn draw_exact<X: Exact>(&mut self, items: &mut [X]) -> Result<(), Error> {
         let Some(camera) = &self.frame.camera else { return Ok(()) };
-        let Some((rectangle, pixels)) = exact::draw(camera, balls) else { return Ok(()) };
+        let Some((rectangle, pixels)) = exact::draw(camera, items) else { return Ok(()) };
         let gpu = self.gpu;
         let drawn = self.bench.pool.filled(gpu, "Round::patch", &pixels)?;
         gpu.queue.write_buffer(&self.bench.patch, 0, bytemuck::bytes_of(&rectangle));

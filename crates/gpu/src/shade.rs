@@ -19,12 +19,14 @@ in groups, as they are for drawing.
 */
 
 use crate::{
-    Error, GpuRenderer, Shaded,
+    Error, GpuRenderer, Shaded, Spheres,
+    exact::Ball,
     paint::Paint,
     residency::SEGMENT,
     round::{Batch, CHUNK, CHUNKS_MAX, IS_RECALLED, Piece},
     shade_list::{Entry, list},
     shade_pass::{Shading, Tables},
+    shape::Shape,
     store::Store,
     table::Known,
 };
@@ -75,7 +77,7 @@ pub(crate) struct ShadeData {
     pub(crate) decode: [f32; 256],
 }
 
-impl GpuRenderer {
+impl GpuRenderer<Spheres> {
     /// Makes an image of what was drawn so far, on the GPU. It equals what the CPU's shading makes of the
     /// finished picture.
     ///
@@ -202,7 +204,7 @@ impl GpuRenderer {
     fn collect(
         &mut self,
         (run, records): (u32, Range<u32>),
-        batch: &mut Batch,
+        batch: &mut Batch<Ball>,
         (paint, unpainted): (&Paint<'_>, &mut Vec<(u32, u32)>),
     ) -> Result<Range<u32>, Error> {
         let mut first = records.start;
@@ -224,7 +226,7 @@ impl GpuRenderer {
             first = last;
         }
         if first == records.start && batch.records == 0 && !records.is_empty() {
-            let least = u64::from(SEGMENT) * crate::store::RECORD_BYTES;
+            let least = Spheres::LAYOUT.bytes();
             return Err(Error::Budget { bytes: self.config.record_bytes, least });
         }
         Ok(first..records.end)
@@ -235,12 +237,13 @@ impl GpuRenderer {
         &mut self,
         content: &Content<'_, R>,
         (shading, tables, paint): (&Shading, &Tables, &Paint<'_>),
-        (batch, unpainted): (&mut Batch, &mut Vec<(u32, u32)>),
+        (batch, unpainted): (&mut Batch<Ball>, &mut Vec<(u32, u32)>),
     ) -> Result<(), Error> {
         self.round += 1;
         let records = u32::try_from(content.scene.records.len()).unwrap_or(u32::MAX);
         let Some(store) = &mut self.store else { return Ok(()) };
-        store.bring(&self.gpu, &mut self.ring, (content.scene, &batch.missing))?;
+        let pack = |range, words: &mut Vec<u32>| self.shape.pack(content.scene, range, words);
+        store.bring(&self.gpu, &mut self.ring, (content.scene, &batch.missing, &pack))?;
         store.paint(&self.gpu, (paint, records), unpainted)?;
         unpainted.clear();
         for (page, pieces) in batch.pieces.iter().enumerate().filter(|(_, p)| !p.is_empty()) {

@@ -115,6 +115,7 @@ impl Shading {
             None => store.colors(gpu, page)?,
         };
         let page = store.page(gpu, page)?;
+        let Some(ids) = &page.ids else { return Ok(()) };
         let runs = frame.table.buffer(gpu)?;
         let chunks: u32 = pieces.iter().map(|piece| piece.count.div_ceil(CHUNK)).sum();
         let pool = &mut bench.pool;
@@ -147,8 +148,8 @@ impl Shading {
                 (0, frame.target.camera.as_entire_binding()),
                 (1, runs.as_entire_binding()),
                 (2, self.data.as_entire_binding()),
-                (3, page.spheres.as_entire_binding()),
-                (4, page.ids.as_entire_binding()),
+                (3, page.records.as_entire_binding()),
+                (4, ids.as_entire_binding()),
                 (5, cut.as_entire_binding()),
                 (10, tables.seen.as_entire_binding()),
                 (13, tables.bases.as_entire_binding()),

@@ -9,13 +9,14 @@ use crate::{
     kernel::shader,
     kernels, raster,
     round::{CHUNK_BYTES, DISC_BYTES},
-    shade_pass,
+    shade_pass, solids,
 };
 use naga::{
     Module,
     proc::Layouter,
     valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
 };
+use puncta_avc::{Cuboid, Glyphs};
 
 /// Names, offsets and sizes of a struct's members.
 pub(crate) type Members = Vec<(String, u32, u32)>;
@@ -100,6 +101,8 @@ fn drawing() -> Vec<(String, String, Capabilities)> {
             }
         }
         all.push((format!("splat {word}"), raster::splat_source(visibility), words));
+        all.push((format!("cuboids {word}"), solids::source::<Cuboid>(visibility), words));
+        all.push((format!("blocks of facets {word}"), solids::blocks_source(visibility), words));
     }
     all
 }
@@ -145,6 +148,7 @@ fn structs_are_the_same_everywhere() {
         ("Tile", Some(8)),
         ("Shade", None),
         ("Entry", None),
+        ("Facet", Some(solids::FACET_BYTES)),
     ];
     for (name, size) in sizes {
         let having = modules.iter().filter(|(_, module)| is_there(module, name));
@@ -200,6 +204,15 @@ fn every_pipeline_can_be_built() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn everything_of_glyphs_can_be_built() {
+    let without_loads = WANTED - wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS;
+    for features in [wgpu::Features::empty(), without_loads, WANTED] {
+        let (gpu, glyphs) = (noop(features), Glyphs::<Cuboid>::new([]));
+        GpuRenderer::of(&gpu, glyphs, GpuConfig::default()).unwrap();
     }
 }
 

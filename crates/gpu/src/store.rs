@@ -16,26 +16,70 @@ use crate::{
 use puncta_core::{Record, Scene};
 use std::{
     collections::VecDeque,
+    ops::Range,
     sync::mpsc::{self, Receiver, Sender},
 };
 
-/// The bytes of a record on the GPU: a sphere, an id, and a color, for which there is always room.
-pub(crate) const RECORD_BYTES: u64 = 24;
-
-/// How many segments a staging buffer holds: 4 MB.
-pub(crate) const STAGED: usize = 205;
+/// About how many bytes a staging buffer holds.
+const STAGED: u64 = 4 << 20;
 
 /// How many staging buffers there are.
 const RING: usize = 3;
 
-const SPHERE_BYTES: u64 = 16 * SEGMENT as u64;
-const ID_BYTES: u64 = 4 * SEGMENT as u64;
+/// How many places of records a page has at most: chunks name them by 26 bits.
+const PLACES_MAX: u64 = 1 << 26;
+
+/// How the records of a scene lie on the GPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Layout {
+    /// The 32-bit words of a record.
+    pub(crate) words: u32,
+    /// Whether ids lie beside the records, and room for colors. Otherwise an id is one of the words.
+    pub(crate) has_ids: bool,
+    /// How many records of the neighboring segments are repeated before and after those of a segment.
+    pub(crate) before: u32,
+    pub(crate) after: u32,
+}
+
+impl Layout {
+    /// How many places of records a slot has.
+    const fn places(self) -> u32 {
+        self.before + SEGMENT + self.after
+    }
+
+    /// The bytes of the records in a slot.
+    const fn slot_bytes(self) -> u64 {
+        self.places() as u64 * self.words as u64 * 4
+    }
+
+    /// The bytes of the ids in a slot, if they lie beside the records.
+    const fn id_bytes(self) -> u64 {
+        if self.has_ids { self.places() as u64 * 4 } else { 0 }
+    }
+
+    const fn staged_bytes(self) -> u64 {
+        self.slot_bytes() + self.id_bytes()
+    }
+
+    /// The bytes of a slot; where there are ids, there is room for colors.
+    pub(crate) const fn bytes(self) -> u64 {
+        self.slot_bytes() + 2 * self.id_bytes()
+    }
+
+    /// How many slots a staging buffer holds.
+    fn staged(self) -> usize {
+        usize::try_from(STAGED / self.staged_bytes()).unwrap_or(1).max(1)
+    }
+}
+
+/// Writes the words of records and of what is repeated around them.
+pub(crate) type Pack<'a> = &'a (dyn Fn(Range<usize>, &mut Vec<u32>) + Sync);
 
 /// The records of some segments.
 #[derive(Clone, Debug)]
 pub(crate) struct Page {
-    pub(crate) spheres: wgpu::Buffer,
-    pub(crate) ids: wgpu::Buffer,
+    pub(crate) records: wgpu::Buffer,
+    pub(crate) ids: Option<wgpu::Buffer>,
     /// Once something was shaded that needs them.
     pub(crate) colors: Option<wgpu::Buffer>,
 }
@@ -45,6 +89,7 @@ pub(crate) struct Page {
 pub(crate) struct Store {
     /// The versions of the columns that it was made of, and the number of records.
     key: (u64, u64, usize),
+    pub(crate) layout: Layout,
     pub(crate) residency: Residency,
     pub(crate) coat: Coat,
     pages: Vec<Option<Page>>,
@@ -84,18 +129,24 @@ fn id_max<R: Record>(scene: &Scene<R>) -> u32 {
 
 impl Store {
     /// A store for the records of a scene, of at most so many bytes.
-    pub(crate) fn new<R: Record>(gpu: &Gpu, scene: &Scene<R>, bytes: u64) -> Result<Self, Error> {
-        let segment_bytes = RECORD_BYTES * u64::from(SEGMENT);
-        if bytes < segment_bytes {
-            return Err(Error::Budget { bytes, least: segment_bytes });
+    pub(crate) fn new<R: Record>(
+        gpu: &Gpu,
+        scene: &Scene<R>,
+        (layout, bytes): (Layout, u64),
+    ) -> Result<Self, Error> {
+        let least = layout.bytes();
+        if bytes < least {
+            return Err(Error::Budget { bytes, least });
         }
         let segments = scene.records.len().div_ceil(SEGMENT as usize);
-        let slots = (bytes / segment_bytes).min(segments as u64).max(1);
-        let page_slots = (gpu.binding_bytes_max() / SPHERE_BYTES).clamp(1, 1 << 16);
+        let slots = (bytes / least).min(segments as u64).max(1);
+        let page_slots = (gpu.binding_bytes_max() / layout.slot_bytes())
+            .clamp(1, PLACES_MAX / u64::from(layout.places()));
         let slots = u32::try_from(slots).unwrap_or(u32::MAX);
         let page_slots = u32::try_from(page_slots).unwrap_or(1).min(slots);
         Ok(Self {
             key: key(scene),
+            layout,
             residency: Residency::new(segments, slots as usize),
             coat: Coat::default(),
             pages: vec![None; slots.div_ceil(page_slots) as usize],
@@ -113,7 +164,8 @@ impl Store {
     /// The bytes of all pages that were made.
     pub(crate) fn bytes(&self) -> u64 {
         let colors = |page: &Page| page.colors.as_ref().map_or(0, wgpu::Buffer::size);
-        let size = |page: &Page| page.spheres.size() + page.ids.size() + colors(page);
+        let ids = |page: &Page| page.ids.as_ref().map_or(0, wgpu::Buffer::size);
+        let size = |page: &Page| page.records.size() + ids(page) + colors(page);
         self.pages.iter().flatten().map(size).sum()
     }
 
@@ -124,7 +176,8 @@ impl Store {
 
     /// The page of a slot, and where the slot's records start in it.
     pub(crate) fn address(&self, slot: u32) -> (usize, u32) {
-        ((slot / self.page_slots) as usize, slot % self.page_slots * SEGMENT)
+        let start = slot % self.page_slots * self.layout.places() + self.layout.before;
+        ((slot / self.page_slots) as usize, start)
     }
 
     /// A page, which is made if need be.
@@ -134,9 +187,10 @@ impl Store {
         }
         let first = u32::try_from(page).unwrap_or(u32::MAX).saturating_mul(self.page_slots);
         let slots = u64::from(self.page_slots.min(self.slots.saturating_sub(first)));
+        let ids = slots * self.layout.id_bytes();
         let made = Page {
-            spheres: storage(gpu, "Page::spheres", slots * SPHERE_BYTES)?,
-            ids: storage(gpu, "Page::ids", slots * ID_BYTES)?,
+            records: storage(gpu, "Page::records", slots * self.layout.slot_bytes())?,
+            ids: if ids > 0 { Some(storage(gpu, "Page::ids", ids)?) } else { None },
             colors: None,
         };
         self.pages[page] = Some(made.clone());
@@ -149,7 +203,8 @@ impl Store {
         if let Some(colors) = known.colors {
             return Ok(colors);
         }
-        let colors = storage(gpu, "Page::colors", known.ids.size())?;
+        let bytes = known.ids.as_ref().map_or(0, wgpu::Buffer::size);
+        let colors = storage(gpu, "Page::colors", bytes)?;
         if let Some(Some(page)) = self.pages.get_mut(page) {
             page.colors = Some(colors.clone());
         }
@@ -179,12 +234,12 @@ impl Store {
         &mut self,
         gpu: &Gpu,
         ring: &mut Ring,
-        (scene, missing): (&Scene<R>, &[(u32, u32)]),
+        (scene, missing, pack): (&Scene<R>, &[(u32, u32)], Pack<'_>),
     ) -> Result<(), Error> {
         if missing.is_empty() {
             return Ok(());
         }
-        let result = self.stream(gpu, ring, (scene, missing));
+        let result = self.stream(gpu, ring, (scene, missing, pack));
         if result.is_err() {
             self.residency.drop_all();
             self.coat = Coat::default();
@@ -197,10 +252,12 @@ impl Store {
         &mut self,
         gpu: &Gpu,
         ring: &mut Ring,
-        (scene, missing): (&Scene<R>, &[(u32, u32)]),
+        (scene, missing, pack): (&Scene<R>, &[(u32, u32)], Pack<'_>),
     ) -> Result<(), Error> {
-        let filler = Filler { records: &scene.records, ids: scene.attributes.ids.as_deref() };
-        let mut rest = missing.chunks(STAGED);
+        let ids = scene.attributes.ids.as_deref();
+        let filler = Filler { count: scene.records.len(), pack, ids, layout: self.layout };
+        let staged = self.layout.staged();
+        let mut rest = missing.chunks(staged);
         std::thread::scope(|scope| {
             let (jobs, waiting) = mpsc::channel::<(wgpu::Buffer, &[(u32, u32)])>();
             let (done, filled) = mpsc::channel();
@@ -215,7 +272,8 @@ impl Store {
             let mut under_way = 0;
             loop {
                 while under_way < RING - 1 && rest.len() > 0 {
-                    let Some(staging) = ring.next(gpu)? else { break };
+                    let bytes = staged as u64 * self.layout.staged_bytes();
+                    let Some(staging) = ring.next(gpu, bytes)? else { break };
                     if let Some(batch) = rest.next() {
                         jobs.send((staging, batch)).ok();
                         under_way += 1;
@@ -248,33 +306,30 @@ impl Store {
         for (place, (_, slot)) in (0_u64..).zip(batch) {
             let (page, first) = self.address(*slot);
             let page = self.page(gpu, page)?;
-            let from = place * (SPHERE_BYTES + ID_BYTES);
-            let first = u64::from(first);
-            work.encoder.copy_buffer_to_buffer(
-                staging,
-                from,
-                &page.spheres,
-                first * 16,
-                SPHERE_BYTES,
-            );
-            let from = from + SPHERE_BYTES;
-            work.encoder.copy_buffer_to_buffer(staging, from, &page.ids, first * 4, ID_BYTES);
+            let Layout { words, before, .. } = self.layout;
+            let (slot_bytes, id_bytes) = (self.layout.slot_bytes(), self.layout.id_bytes());
+            let from = place * self.layout.staged_bytes();
+            let (first, record) = (u64::from(first - before), u64::from(words) * 4);
+            let encoder = &mut work.encoder;
+            encoder.copy_buffer_to_buffer(staging, from, &page.records, first * record, slot_bytes);
+            if let Some(ids) = &page.ids {
+                encoder.copy_buffer_to_buffer(staging, from + slot_bytes, ids, first * 4, id_bytes);
+            }
         }
-        self.brought += batch.len() as u64 * (SPHERE_BYTES + ID_BYTES);
+        self.brought += batch.len() as u64 * self.layout.staged_bytes();
         gpu.guard("bringing records", || work.submit())
     }
 }
 
 impl Ring {
     /// A buffer that can be filled; waits for one if there is none.
-    fn next(&mut self, gpu: &Gpu) -> Result<Option<wgpu::Buffer>, Error> {
+    fn next(&mut self, gpu: &Gpu, bytes: u64) -> Result<Option<wgpu::Buffer>, Error> {
         self.free.extend(self.back.1.try_iter());
         if let Some(free) = self.free.pop_front() {
             return Ok(Some(free));
         }
         if self.count < RING {
             self.count += 1;
-            let bytes = STAGED as u64 * (SPHERE_BYTES + ID_BYTES);
             let usage = wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC;
             let made = buffer(gpu, "Ring::staging", (bytes, usage))?;
             gpu.guard("staging", || made.map_async(wgpu::MapMode::Write, .., |_| {}))?;
@@ -301,36 +356,39 @@ impl Ring {
 }
 
 /// Fills staging buffers with the records of a scene.
-#[derive(Clone, Copy, Debug)]
-struct Filler<'a, R> {
-    records: &'a [R],
+#[derive(Clone, Copy)]
+struct Filler<'a> {
+    count: usize,
+    pack: Pack<'a>,
     ids: Option<&'a [u32]>,
+    layout: Layout,
 }
 
-impl<R: Record> Filler<'_, R> {
+impl Filler<'_> {
     fn fill(&self, staging: &wgpu::Buffer, batch: &[(u32, u32)]) -> Result<(), Error> {
         let lost = |error: wgpu::MapRangeError| Error::Lost { reason: error.to_string() };
         let mut view = staging.get_mapped_range_mut(..).map_err(lost)?;
-        let (mut spheres, mut ids) = (Vec::new(), Vec::new());
-        let bytes = usize::try_from(SPHERE_BYTES + ID_BYTES).unwrap_or(0);
-        let at = usize::try_from(SPHERE_BYTES).unwrap_or(0);
+        let mut words = Vec::new();
+        let size = |bytes: u64| usize::try_from(bytes).unwrap_or(0);
+        let bytes = size(self.layout.staged_bytes());
         for (place, (segment, _)) in batch.iter().enumerate() {
             let first = *segment as usize * SEGMENT as usize;
-            let last = (first + SEGMENT as usize).min(self.records.len());
-            let sphere = |record: &R| record.position().extend(record.radius()).to_array();
-            spheres.clear();
-            spheres.extend(self.records[first..last].iter().map(sphere));
-            ids.clear();
-            match self.ids {
-                Some(all) => ids.extend_from_slice(&all[first..last]),
-                None => ids.extend((first..last).map(|id| u32::try_from(id).unwrap_or(u32::MAX))),
-            }
+            let last = (first + SEGMENT as usize).min(self.count);
+            words.clear();
+            (self.pack)(first..last, &mut words);
             // Slots are always filled: what is beyond the last record is not drawn.
-            spheres.resize(SEGMENT as usize, [0.0; 4]);
-            ids.resize(SEGMENT as usize, 0);
+            words.resize(size(self.layout.slot_bytes()) / 4, 0);
+            if self.layout.has_ids {
+                match self.ids {
+                    Some(all) => words.extend_from_slice(&all[first..last]),
+                    None => {
+                        words.extend((first..last).map(|id| u32::try_from(id).unwrap_or(u32::MAX)))
+                    }
+                }
+                words.resize(bytes / 4, 0);
+            }
             let from = place * bytes;
-            view.slice(from..from + at).copy_from_slice(bytemuck::cast_slice(&spheres));
-            view.slice(from + at..from + bytes).copy_from_slice(bytemuck::cast_slice(&ids));
+            view.slice(from..from + bytes).copy_from_slice(bytemuck::cast_slice(&words));
         }
         Ok(())
     }

@@ -19,11 +19,11 @@ struct Left {
 }
 
 /// Notes what each brick may gain, and counts the pixels that are open.
-pub(crate) fn survey(
-    renderer: &mut GpuRenderer,
+pub(crate) fn survey<S>(
+    renderer: &mut GpuRenderer<S>,
     bricks: &mut [VisibleBrick],
 ) -> Result<u64, Error> {
-    let GpuRenderer { gpu, kernels, raster, bench, frame, .. } = renderer;
+    let GpuRenderer { gpu, kernels, bench, frame, .. } = renderer;
     let frame = frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
     let mut left = Vec::with_capacity(bricks.len());
     for brick in bricks.iter() {
@@ -37,7 +37,7 @@ pub(crate) fn survey(
     let count = u32::try_from(left.len()).unwrap_or(u32::MAX);
     let data = RoundData { pieces: count, capacity: 0, small: 0, pass_of_two: 0 };
     let skipping = Skipping::Hidden;
-    let mut stage = Stage { gpu, kernels, raster, bench, frame, skipping, seen: None };
+    let mut stage = Stage { gpu, kernels, bench, frame, skipping, seen: None };
     gpu.guard("a survey", || {
         let mut work = Work::new(gpu, "survey");
         stage.freshen(&mut work);
@@ -84,8 +84,8 @@ pub(crate) fn survey(
 }
 
 /// Keeps those of some bricks that are not hidden by what is drawn.
-pub(crate) fn glance(renderer: &mut GpuRenderer, bricks: &[u32]) -> Result<Vec<u32>, Error> {
-    let GpuRenderer { gpu, kernels, raster, bench, frame, .. } = renderer;
+pub(crate) fn glance<S>(renderer: &mut GpuRenderer<S>, bricks: &[u32]) -> Result<Vec<u32>, Error> {
+    let GpuRenderer { gpu, kernels, bench, frame, .. } = renderer;
     let frame = frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
     let run = |&brick: &u32| match frame.table.known(brick) {
         Known::Plain(run) | Known::Close(run) => Some((brick, Left { run, far: 0.0 })),
@@ -98,7 +98,7 @@ pub(crate) fn glance(renderer: &mut GpuRenderer, bricks: &[u32]) -> Result<Vec<u
     let count = u32::try_from(left.len()).unwrap_or(u32::MAX);
     let data = RoundData { pieces: count, capacity: 0, small: 0, pass_of_two: 0 };
     let skipping = Skipping::Hidden;
-    let mut stage = Stage { gpu, kernels, raster, bench, frame, skipping, seen: None };
+    let mut stage = Stage { gpu, kernels, bench, frame, skipping, seen: None };
     gpu.guard("a glance", || {
         let mut work = Work::new(gpu, "glance");
         stage.freshen(&mut work);
@@ -120,7 +120,7 @@ pub(crate) fn glance(renderer: &mut GpuRenderer, bricks: &[u32]) -> Result<Vec<u
 }
 
 /// Which pixels are open since the last survey.
-pub(crate) fn open_pixels(renderer: &mut GpuRenderer) -> Result<Vec<bool>, Error> {
+pub(crate) fn open_pixels<S>(renderer: &mut GpuRenderer<S>) -> Result<Vec<bool>, Error> {
     let GpuRenderer { gpu, bench, frame, .. } = renderer;
     let frame = frame.as_ref().ok_or(puncta_core::Error::NotBegun)?;
     let (target, view) = (&frame.target, &frame.target.view);

@@ -3,7 +3,7 @@
 use crate::{
     Error, Gpu,
     frame::{CameraData, tiles},
-    kernel::{Work, storage, uniform},
+    kernel::{Kernel, Work, storage, uniform},
     raster::DEPTH_FORMAT,
 };
 use puncta_core::View;
@@ -68,6 +68,19 @@ impl Target {
             }
             work.submit();
         })
+    }
+
+    /// Where words have 32 bits, makes pixels whose depth has changed forget their ids. Returns whether
+    /// they are to be drawn now, by drawing once more.
+    pub(crate) fn claim(&self, work: &mut Work<'_>, claim: &Kernel) -> bool {
+        let Some(known) = &self.known else { return false };
+        let bindings = [
+            (0, self.camera.as_entire_binding()),
+            (9, self.visibility.as_entire_binding()),
+            (10, known.as_entire_binding()),
+        ];
+        claim.run(work, &bindings, self.pixels());
+        true
     }
 
     pub(crate) fn pixels(&self) -> u32 {

@@ -1,0 +1,237 @@
+// Chunks of glyphs become pixels, by one workgroup each.
+//
+// Each lane looks at a record: if it is seen, how many triangles has its form? A scan of these numbers
+// gives each triangle a place, and the lanes go over the triangles together. A lane draws a triangle
+// itself if it is small. Others are left for `glyph_blocks.wgsl`, as many as there is room for.
+
+struct Chunk {
+    run: u32,
+    records: u32,
+}
+
+struct Tile {
+    deepest: f32,
+    shallowest: f32,
+}
+
+@group(0) @binding(5) var<storage, read> chunks: array<Chunk>;
+@group(0) @binding(8) var<storage, read> tiles: array<Tile>;
+// A bit for each id that was seen in the picture before.
+@group(0) @binding(10) var<storage, read> seen: array<u32>;
+
+const SLOTS: u32 = 0x3ffffffu;
+
+// By how much a ball is larger than what it holds: more than rounding.
+const AROUND: f32 = 1.00001;
+
+// The triangles of the records up to each lane.
+var<workgroup> ends: array<u32, 64>;
+
+@compute @workgroup_size(64)
+fn draw_glyphs(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let chunk = chunks[group.x];
+    let first = chunk.records & SLOTS;
+    var count = 0u;
+    if lane <= (chunk.records >> 26u) {
+        count = triangles_of(runs[chunk.run], first + lane);
+    }
+    scan(lane, count);
+    draw_triangles(chunk.run, first, lane);
+}
+
+// As `draw_glyphs`, for the records that were seen in the picture before.
+@compute @workgroup_size(64)
+fn recall_glyphs(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let chunk = chunks[group.x];
+    let first = chunk.records & SLOTS;
+    var count = 0u;
+    if lane <= (chunk.records >> 26u) {
+        let id = word(first + lane, WORDS - 1u);
+        if (seen[id >> 5u] >> (id & 31u) & 1u) != 0u {
+            if round.pass_of_two == 0u {
+                atomicAdd(&large.recalled, 1u);
+            }
+            count = triangles_of(runs[chunk.run], first + lane);
+        }
+    }
+    scan(lane, count);
+    draw_triangles(chunk.run, first, lane);
+}
+
+fn scan(lane: u32, count: u32) {
+    ends[lane] = count;
+    workgroupBarrier();
+    for (var step = 1u; step < 64u; step *= 2u) {
+        var before = 0u;
+        if lane >= step {
+            before = ends[lane - step];
+        }
+        workgroupBarrier();
+        ends[lane] += before;
+        workgroupBarrier();
+    }
+}
+
+fn draw_triangles(run: u32, first: u32, lane: u32) {
+    let total = ends[63];
+    for (var triangle = lane; triangle < total; triangle += 64u) {
+        // The first record whose triangles end behind this one.
+        var low_end = 0u;
+        var high_end = 63u;
+        while low_end < high_end {
+            let middle = (low_end + high_end) / 2u;
+            if ends[middle] > triangle {
+                high_end = middle;
+            } else {
+                low_end = middle + 1u;
+            }
+        }
+        var start = 0u;
+        if low_end > 0u {
+            start = ends[low_end - 1u];
+        }
+        draw_triangle(runs[run], first + low_end, triangle - start);
+    }
+}
+
+// What the view is for a record.
+fn sight_of(run: Run, position: vec3<f32>) -> Sight {
+    var sight: Sight;
+    sight.sharpness = bitcast<f32>(common_words[0]);
+    sight.pixel = camera.pixel;
+    if camera.is_perspective != 0u {
+        let center = run.center;
+        let eye = -(camera.right * center.x + camera.up * center.y + camera.forward * center.z);
+        sight.eye = vec4(eye - (position - run.reference), 1.0);
+        sight.nearest = run.nearest;
+    } else {
+        sight.eye = vec4(-camera.forward, 0.0);
+        sight.nearest = 1.0;
+    }
+    return sight;
+}
+
+// How many triangles of a record are to be drawn: none if it is hidden or covers no pixel's centre.
+fn triangles_of(run: Run, at: u32) -> u32 {
+    let ball = glyph_ball(at);
+    let disc = place(run, vec4(ball.xyz, ball.w * AROUND));
+    if low(disc.columns) > high(disc.columns) || is_hidden(disc) {
+        return 0u;
+    }
+    return glyph_size(glyph_form(at, sight_of(run, glyph_position(at)))).y;
+}
+
+fn is_hidden(disc: Disc) -> bool {
+    let nearest = nearest_of(disc.depth, disc.radius);
+    let columns = vec2(low(disc.columns), high(disc.columns)) / TILE;
+    let rows = vec2(low(disc.rows), high(disc.rows)) / TILE;
+    for (var row = rows.x; row <= rows.y; row++) {
+        for (var column = columns.x; column <= columns.y; column++) {
+            if !(tiles[row * camera.across + column].deepest < nearest) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+struct Corner {
+    // In camera coordinates, relative to the reference, and the view depth.
+    local: vec3<f32>,
+    depth: f32,
+    // In pixels, relative to the pixel of the run.
+    at: vec2<f32>,
+}
+
+fn corner(run: Run, offset: vec3<f32>) -> Corner {
+    let local = vec3(
+        dot(camera.right, offset),
+        dot(camera.up, offset),
+        dot(camera.forward, offset),
+    );
+    let depth = run.center.z + local.z;
+    let spread = select(1.0, depth, camera.is_perspective != 0u);
+    let aside = (local.xy - run.slope * local.z) * (camera.per_pixel / spread);
+    return Corner(local, depth, run.fraction + vec2(aside.x, -aside.y));
+}
+
+fn draw_triangle(run: Run, at: u32, triangle: u32) {
+    let position = glyph_position(at);
+    let form = glyph_form(at, sight_of(run, position));
+    let names = glyph_triangle(form, triangle);
+    let offset = position - run.reference;
+    let a = corner(run, offset + glyph_vertex(form, names.x));
+    let b = corner(run, offset + glyph_vertex(form, names.y));
+    let c = corner(run, offset + glyph_vertex(form, names.z));
+    let ab = b.at - a.at;
+    let ac = c.at - a.at;
+    // In a picture, where rows run downwards, what is seen from in front turns the other way round.
+    if !(ab.x * ac.y - ab.y * ac.x < 0.0) {
+        return;
+    }
+    let low_at = min(a.at, min(b.at, c.at)) - WIDER;
+    let high_at = max(a.at, max(b.at, c.at)) + WIDER;
+    let first = max(run.whole + vec2<i32>(ceil(low_at)), vec2(0));
+    let size = vec2(i32(camera.width), i32(camera.height));
+    let last = min(run.whole + vec2<i32>(floor(high_at)), size - 1);
+    if any(first > last) {
+        return;
+    }
+    // Camera coordinates are left-handed: this points outwards.
+    let normal = cross(c.local - a.local, b.local - a.local);
+    var facet: Facet;
+    if camera.is_perspective != 0u {
+        let away = dot(normal, run.center + a.local);
+        facet.slope = normal.xy * (camera.pixel * a.depth / away);
+    } else {
+        facet.slope = -normal.xy * (camera.pixel / normal.z);
+    }
+    facet.slope.y = -facet.slope.y;
+    facet.a = a.at;
+    facet.b = c.at;
+    facet.c = b.at;
+    facet.depth = a.depth;
+    facet.nearest = max(min(a.depth, min(b.depth, c.depth)), camera.near);
+    facet.farthest = max(a.depth, max(b.depth, c.depth));
+    facet.id = word(at, WORDS - 1u);
+    facet.whole = pack(run.whole.x, run.whole.y);
+    facet.columns = pack(first.x, last.x);
+    facet.rows = pack(first.y, last.y);
+    let sides = vec2<u32>(last - first) + 1u;
+    if sides.x * sides.y <= round.small || !leave(facet) {
+        draw_rectangle(facet, vec2<u32>(first), vec2<u32>(last), 1u);
+    }
+}
+
+// Leaves a facet to be drawn block by block; returns whether there was room for it. Blocks for which
+// there is none are drawn at once.
+fn leave(facet: Facet) -> bool {
+    let index = atomicAdd(&large.facets, 1u);
+    if index >= FACETS {
+        return false;
+    }
+    large.list[index] = facet;
+    let first = vec2(low(facet.columns), low(facet.rows));
+    let last = vec2(high(facet.columns), high(facet.rows));
+    let start = first / BLOCK;
+    let to = last / BLOCK;
+    var slot = atomicAdd(&large.blocks, (to.x - start.x + 1u) * (to.y - start.y + 1u));
+    for (var y = start.y; y <= to.y; y++) {
+        for (var x = start.x; x <= to.x; x++) {
+            if slot < arrayLength(&large.block) {
+                large.block[slot] = vec2(index, x | (y << 16u));
+            } else {
+                let corner = vec2(x, y) * BLOCK;
+                draw_rectangle(facet, max(first, corner), min(last, corner + BLOCK - 1u), 1u);
+            }
+            slot++;
+        }
+    }
+    return true;
+}

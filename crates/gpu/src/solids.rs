@@ -1,0 +1,321 @@
+/*!
+Records as glyphs: closed surfaces of triangles, which exist only while they are drawn.
+
+The shaders of a glyph are put together from its own WGSL and from what draws triangles (`glyph.wgsl`).
+Nothing is kept of a triangle that is small; large ones wait in a list of fixed size to be drawn block by
+block. The geometry is that of the CPU's twin, and so are its levels of detail, which belong to bricks.
+
+# How exact it is
+
+Corners are placed as spheres are (`runs.rs`), and an edge is tested relative to the pixel. With corners
+within 1024 pixels of the reference, a corner is off by at most 5e-4 pixels, an edge by that and by
+1e-4 for its test. What is larger, or nearer than its own size, or cut by the near plane, is drawn by the
+CPU in `f64`.
+*/
+
+use crate::{
+    Error, Gpu,
+    exact::{Exact, key},
+    kernel::{Kernel, Pool, Work, shader, storage},
+    picture::Frame,
+    runs::is_plain_sphere,
+    shape::{Close, Draw, Near, Place, Shape},
+    store::Layout,
+    table::bound_of_sphere,
+};
+use puncta_avc::{Glyph, Glyphs, Holders, Lens, PRELUDE, Surface};
+use puncta_core::{Bounder, Camera, Content, NO_RECORD, Picture, Scene, ScreenBound};
+use rayon::prelude::*;
+use std::{fmt, ops::Range};
+
+/// By how much a ball is larger than what it holds: more than rounding.
+const AROUND: f64 = 1.00001;
+
+/// How many large facets there is room for, and how many blocks of them.
+const FACETS: u64 = 16_384;
+const BLOCKS: u64 = 1 << 18;
+
+/// The bytes of `Facet` of `glyph_facet.wgsl`.
+pub(crate) const FACET_BYTES: u64 = 64;
+
+/// Draws records as glyphs.
+pub struct Solids<G: Glyph> {
+    pub(crate) glyphs: Glyphs<G>,
+    draw: Kernel,
+    recall: Kernel,
+    over_blocks: Kernel,
+    draw_blocks: Kernel,
+    /// What glyphs share, and what of it was written last.
+    common: Option<wgpu::Buffer>,
+    written: Option<(Vec<u32>, u64)>,
+}
+
+impl<G: Glyph> fmt::Debug for Solids<G> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Solids").field("glyphs", &self.glyphs).finish_non_exhaustive()
+    }
+}
+
+/// The words of a record, and of the style.
+pub(crate) const fn words<G: Glyph>() -> (usize, usize) {
+    const {
+        assert!(size_of::<G>().is_multiple_of(4), "a record must be made of words of 32 bits");
+        assert!(size_of::<G::Style>().is_multiple_of(4), "so must a style");
+    }
+    (size_of::<G>() / 4, size_of::<G::Style>() / 4)
+}
+
+/// What lies before the code of a glyph, and its code.
+pub(crate) fn glyph_source<G: Glyph>() -> String {
+    let (words, style) = words::<G>();
+    let constants = format!("const WORDS: u32 = {}u;\nconst STYLE: u32 = {style}u;\n", words + 1);
+    [&constants, PRELUDE, shader!("glyph_words"), G::WGSL].concat()
+}
+
+/// The shader that draws a glyph.
+pub(crate) fn source<G: Glyph>(visibility: &str) -> String {
+    let before = shader!("camera", "disc", "work", "place");
+    let after = shader!("glyph_facet", "glyph");
+    [before, visibility, &glyph_source::<G>(), after].concat()
+}
+
+/// The shader that draws what is large of any glyph.
+pub(crate) fn blocks_source(visibility: &str) -> String {
+    let before = shader!("camera", "disc", "work");
+    [before, visibility, shader!("glyph_facet", "glyph_blocks")].concat()
+}
+
+impl<G: Glyph> Solids<G> {
+    pub(crate) fn new(gpu: &Gpu, glyphs: Glyphs<G>) -> Result<Self, Error> {
+        let (own, blocks) = (source::<G>(gpu.visibility()), blocks_source(gpu.visibility()));
+        gpu.guard("pipelines", || {
+            let kernel = |label, source: &str, entry| Kernel::new(gpu, label, (source, entry), &[]);
+            Self {
+                draw: kernel("Solids::draw", &own, "draw_glyphs"),
+                recall: kernel("Solids::recall", &own, "recall_glyphs"),
+                over_blocks: kernel("Solids::over_blocks", &blocks, "over_blocks"),
+                draw_blocks: kernel("Solids::draw_blocks", &blocks, "draw_blocks"),
+                glyphs,
+                common: None,
+                written: None,
+            }
+        })
+    }
+
+    /// Draws chunks once.
+    fn draw_once(&self, work: &mut Work<'_>, place: &Place<'_>, parts: (&Frame, &wgpu::Buffer)) {
+        let ((frame, round), bench) = (parts, place.bench);
+        let Some(common) = &self.common else { return };
+        // What was counted as recalled stays until it is added up.
+        work.encoder.clear_buffer(place.scratch, 0, Some(8));
+        let mut bindings = vec![
+            (0, frame.target.camera.as_entire_binding()),
+            (1, place.runs.as_entire_binding()),
+            (2, round.as_entire_binding()),
+            (3, place.page.records.as_entire_binding()),
+            (5, place.chunks.as_entire_binding()),
+            (6, place.scratch.as_entire_binding()),
+            (8, frame.target.tiles.as_entire_binding()),
+            (9, frame.target.visibility.as_entire_binding()),
+            (13, common.as_entire_binding()),
+        ];
+        let kernel = match place.seen {
+            Some(seen) => {
+                bindings.push((10, seen.as_entire_binding()));
+                &self.recall
+            }
+            None => &self.draw,
+        };
+        kernel.run_indirect(work, &bindings, (&bench.arguments, 0));
+        let counted = [
+            (6, place.scratch.as_entire_binding()),
+            (7, bench.counts.as_entire_binding()),
+            (11, bench.blocks.as_entire_binding()),
+        ];
+        self.over_blocks.run_once(work, &counted);
+        let mut bindings = vec![
+            (0, frame.target.camera.as_entire_binding()),
+            (6, place.scratch.as_entire_binding()),
+            (9, frame.target.visibility.as_entire_binding()),
+        ];
+        if frame.target.known.is_some() {
+            bindings.push((2, round.as_entire_binding()));
+        }
+        self.draw_blocks.run_indirect(work, &bindings, (&bench.blocks, 0));
+    }
+}
+
+impl<G: Glyph> Shape<G> for Solids<G> {
+    type Exact = Solid;
+
+    fn pack(&self, scene: &Scene<G>, range: Range<usize>, words: &mut Vec<u32>) {
+        let layout = self.layout();
+        let (cloud, ids) = (self.glyphs.cloud(&scene.records), scene.attributes.ids.as_deref());
+        let zeros = layout.words as usize;
+        let before = range.start.saturating_sub(layout.before as usize);
+        words.resize(words.len() + zeros * (layout.before as usize - (range.start - before)), 0);
+        let end = (range.end + layout.after as usize).min(cloud.records.len());
+        for index in before..end {
+            // Nothing that is not finite comes here.
+            let is_sound = G::fault(&cloud, index).is_none();
+            let record = if is_sound { cloud.get(index) } else { G::zeroed() };
+            let bytes = bytemuck::bytes_of(&record).chunks_exact(4);
+            words.extend(bytes.map(bytemuck::pod_read_unaligned::<u32>));
+            let id = ids.and_then(|ids| ids.get(index).copied());
+            words.push(id.unwrap_or(u32::try_from(index).unwrap_or(NO_RECORD)));
+        }
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, camera: &Camera) -> Result<(), Error> {
+        let sharpness = Lens::new(camera, self.glyphs.tolerance).sharpness;
+        let style = bytemuck::bytes_of(&self.glyphs.style).chunks_exact(4);
+        let mut head = vec![sharpness.to_bits()];
+        head.extend(style.map(bytemuck::pod_read_unaligned::<u32>));
+        let table = &self.glyphs.table;
+        let now = (head, table.version());
+        if self.written.as_ref() == Some(&now) && self.common.is_some() {
+            return Ok(());
+        }
+        let bytes = (now.0.len() + table.len()) as u64 * 4;
+        let limit = gpu.binding_bytes_max();
+        if bytes > limit {
+            return Err(Error::TableTooLarge { bytes, limit });
+        }
+        let is_same =
+            |(head, version): &(Vec<u32>, u64)| head.len() == now.0.len() && *version == now.1;
+        let has_table = self.written.as_ref().is_some_and(is_same);
+        let buffer = match self.common.take() {
+            Some(buffer) if has_table => buffer,
+            // A buffer of just this size: indices are held within it.
+            _ => storage(gpu, "Solids::common", bytes)?,
+        };
+        gpu.guard("what glyphs share", || {
+            gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&now.0));
+            if !has_table {
+                let place = now.0.len() as u64 * 4;
+                gpu.queue.write_buffer(&buffer, place, bytemuck::cast_slice(table.as_slice()));
+            }
+        })?;
+        (self.common, self.written) = (Some(buffer), Some(now));
+        Ok(())
+    }
+
+    fn close(&self, near: &Near<'_, G>) -> Close<Solid> {
+        let (camera, index) = (near.camera, near.index as usize);
+        let cloud = self.glyphs.cloud(&near.scene.records);
+        if G::fault(&cloud, index).is_some() {
+            return Close::Nothing;
+        }
+        let (center, radius) = G::ball(&cloud, index);
+        let (center, radius) = (camera.place(center.as_dvec3()), f64::from(radius) * AROUND);
+        let Some(bound) = bound_of_sphere(camera, center, radius) else { return Close::Nothing };
+        if is_plain_sphere(camera, center, radius) {
+            let position = cloud.get(index).position();
+            // Its level of detail is that of its brick.
+            let bound = ScreenBound { nearest: near.brick.nearest, ..bound };
+            return Close::Plain(position, camera.place(position.as_dvec3()), bound);
+        }
+        let mut surface = Surface::default();
+        let lens = Lens::new(camera, self.glyphs.tolerance);
+        surface.fill(&lens, &cloud, index, near.brick.nearest);
+        Close::Exact(Solid { surface, bound, id: near.scene.id(near.index) })
+    }
+
+    fn refine(&self, camera: &Camera, content: &Content<'_, G>, picture: &mut Picture) {
+        let (lens, holders) = (
+            Lens::new(camera, self.glyphs.tolerance),
+            Holders::new(content.bricks, content.scene.records.len()),
+        );
+        let (bounder, width) = (Bounder::new(camera), picture.width as usize);
+        let cloud = self.glyphs.cloud(&content.scene.records);
+        // The pixels of a record together, so that its surface is made once.
+        let seen = |(pixel, &id): (usize, &u32)| (id != NO_RECORD).then_some((id, pixel));
+        let mut pixels: Vec<(u32, usize)> =
+            picture.id.par_iter().enumerate().filter_map(seen).collect();
+        pixels.par_sort_unstable();
+        let exact = |pixels: &[(u32, usize)]| {
+            let (id, _) = pixels[0];
+            let brick = holders.find(id).and_then(|brick| content.bricks.get(brick as usize));
+            let Some(brick) = brick else { return Vec::new() };
+            let nearest = bounder.bound(&brick.bounds, brick.radius_max).nearest;
+            let mut surface = Surface::default();
+            surface.fill(&lens, &cloud, id as usize, nearest);
+            let depth = |&(_, pixel): &(u32, usize)| {
+                let (column, row) = ((pixel % width) as f64, (pixel / width) as f64);
+                surface.depth(column, row).map(|depth| (pixel, depth))
+            };
+            pixels.iter().filter_map(depth).collect()
+        };
+        let found: Vec<Vec<(usize, f64)>> =
+            pixels.par_chunk_by(|a, b| a.0 == b.0).map(exact).collect();
+        for (pixel, depth) in found.into_iter().flatten() {
+            #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+            let depth = depth as f32;
+            picture.depth[pixel] = depth;
+        }
+    }
+}
+
+impl<G: Glyph> Draw for Solids<G> {
+    fn layout(&self) -> Layout {
+        let words = u32::try_from(words::<G>().0 + 1).unwrap_or(u32::MAX);
+        let [before, after] = if G::HAS_NEIGHBORS { [1, 2] } else { [0, 0] };
+        Layout { words, has_ids: false, before, after }
+    }
+
+    fn radius_min(&self) -> f32 {
+        0.0
+    }
+
+    fn small(&self, gpu: &Gpu) -> u32 {
+        let is_cpu = gpu.device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+        if is_cpu { 1024 } else { 128 }
+    }
+
+    fn scratch(&self, gpu: &Gpu, pool: &mut Pool, _records: u32) -> Result<wgpu::Buffer, Error> {
+        pool.storage(gpu, "Solids::large", 16 + FACETS * FACET_BYTES + BLOCKS * 8)
+    }
+
+    fn draw(&self, work: &mut Work<'_>, place: &Place<'_>, frame: &mut Frame) {
+        self.draw_once(work, place, (frame, &place.bench.round));
+        if frame.target.claim(work, place.claim) {
+            self.draw_once(work, place, (frame, &place.bench.second));
+        }
+    }
+}
+
+/// A glyph that the CPU draws.
+#[derive(Debug)]
+pub(crate) struct Solid {
+    surface: Surface,
+    bound: ScreenBound,
+    id: u32,
+}
+
+impl Exact for Solid {
+    fn bound(&self) -> &ScreenBound {
+        &self.bound
+    }
+
+    fn weight(&self) -> usize {
+        1 + self.surface.facets().len()
+    }
+
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "both are inside")]
+    fn draw_row(&self, camera: &Camera, row: usize, (first, pixels): (u16, &mut [u64])) {
+        let [width, height] = camera.size();
+        let end = i64::from(first) + pixels.len() as i64 - 1;
+        for facet in self.surface.facets() {
+            let [top, bottom] = facet.rows(height);
+            if !(top..=bottom).contains(&(row as i64)) {
+                continue;
+            }
+            let [from, to] = facet.span(row as f64, width);
+            let depths = facet.depth_of_row(row as f64);
+            for column in from.max(first.into())..=to.min(end) {
+                let pixel = &mut pixels[(column - i64::from(first)) as usize];
+                *pixel = key(depths.at(column as f64) as f32, self.id).max(*pixel);
+            }
+        }
+    }
+}
