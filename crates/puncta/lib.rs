@@ -15,7 +15,10 @@ pub use puncta_core::{
     Pipeline, Progress, Projection, Record, Renderer, Scene, Source, Sphere, Stage, Step, View,
     Visible,
 };
-pub use puncta_cpu::{Background, ColorMap, Coloring, Colors, CpuRenderer, Shading, shade};
+pub use puncta_cpu::{
+    Background, ColorMap, Coloring, Colors, CpuRenderer, Each, Shading, Spheres, shade,
+    shade_glyphs,
+};
 #[cfg(feature = "gpu")]
 pub use puncta_gpu::{Compositor, Gpu, GpuConfig, GpuRenderer, Paint, ShadeConfig};
 #[cfg(all(target_endian = "little", any(unix, windows)))]

@@ -2,10 +2,11 @@
 
 use crate::{
     disc::{Disc, LANES, Target},
+    shape::Brush,
     tiles::Tiles,
 };
 use glam::DVec3;
-use puncta_core::{Amount, Camera, Record, ScreenBound, ScreenBox, depth_below, nearest_depth};
+use puncta_core::{Amount, Camera, ScreenBound, ScreenBox, depth_below, nearest_depth};
 use std::{
     ops::{Range, RangeInclusive},
     sync::atomic::{AtomicBool, Ordering},
@@ -84,7 +85,7 @@ fn bits(mut mask: u32) -> impl Iterator<Item = u32> {
 
 impl Band<'_> {
     /// Draws these pieces, as far as they lie in this band and can be seen.
-    pub(crate) fn draw<R: Record>(&mut self, records: &[R], pieces: &[Piece<'_>]) {
+    pub(crate) fn draw(&mut self, brush: &mut impl Brush, pieces: &[Piece<'_>]) {
         let (first, last) = (self.first_row, self.last_row());
         for piece in pieces {
             let rows = piece.bound.rows.map(i64::from);
@@ -92,29 +93,24 @@ impl Band<'_> {
                 continue;
             }
             piece.is_drawn.store(true, Ordering::Relaxed);
+            let nearest = piece.bound.nearest;
             match &piece.members {
                 Members::All(range) => {
-                    let members = &records[range.start as usize..range.end as usize];
-                    for (id, record) in range.clone().zip(members) {
-                        self.draw_sphere(record, id);
-                    }
+                    range.clone().for_each(|id| brush.draw(self, id, nearest));
                 }
-                Members::Some(ids) => {
-                    for &id in *ids {
-                        self.draw_sphere(&records[id as usize], id);
-                    }
-                }
+                Members::Some(ids) => ids.iter().for_each(|&id| brush.draw(self, id, nearest)),
             }
         }
     }
 
-    fn draw_sphere<R: Record>(&mut self, record: &R, id: u32) {
-        let center = self.camera.place(record.position().as_dvec3());
-        let radius = f64::from(record.radius());
-        let nearest = nearest_depth(center.z, radius);
-        if self.is_hidden(center, radius, nearest) {
+    /// Draws a sphere around a stored position.
+    #[inline]
+    pub(crate) fn draw_sphere(&mut self, position: DVec3, radius: f64, id: u32) {
+        let center = self.camera.place(position);
+        if self.is_hidden(center, radius) {
             return;
         }
+        let nearest = nearest_depth(center.z, radius);
         let Some(mut screen) = self.camera.screen_box(center, radius) else {
             return;
         };
@@ -132,10 +128,10 @@ impl Band<'_> {
         }
     }
 
-    /// Whether a sphere lies outside of this band or behind what is there, at a glance.
+    /// Whether a ball lies outside of this band or behind what is there, at a glance.
     #[inline]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
-    fn is_hidden(&mut self, center: DVec3, radius: f64, nearest: f64) -> bool {
+    pub(crate) fn is_hidden(&mut self, center: DVec3, radius: f64) -> bool {
         // It may be negative where no grid has looked at it.
         if radius < 0.0 {
             return true;
@@ -152,7 +148,8 @@ impl Band<'_> {
         let columns = [columns[0] as usize, columns[1].min(last[0]) as usize];
         let rows = [rows[0].max(first_row) as usize, rows[1].min(last[1]) as usize];
         let is_small = columns[1] - columns[0] <= GLANCE && rows[1] - rows[0] <= GLANCE;
-        is_small && self.tiles.hide_around(columns, rows, (depth_below(nearest), self.depth))
+        let nearest = depth_below(nearest_depth(center.z, radius));
+        is_small && self.tiles.hide_around(columns, rows, (nearest, self.depth))
     }
 
     /// Draws a small sphere, eight pixels at a time.
@@ -206,7 +203,7 @@ impl Band<'_> {
     }
 
     /// Decides between what is seen at a pixel and a record of equal depth.
-    fn break_tie(&mut self, (row, column): (i64, i64), id: u32) {
+    pub(crate) fn break_tie(&mut self, (row, column): (i64, i64), id: u32) {
         let pixel = self.pixel(row, column);
         let original =
             |id: u32| self.ids.and_then(|ids| ids.get(id as usize)).copied().unwrap_or(id);
@@ -217,7 +214,7 @@ impl Band<'_> {
 
     /// Eight pixels of this band.
     #[inline]
-    fn target(&mut self, row: i64, column: i64, new_id: u32) -> Option<Target<'_>> {
+    pub(crate) fn target(&mut self, row: i64, column: i64, new_id: u32) -> Option<Target<'_>> {
         let pixel = self.pixel(row, column);
         let depth = self.depth.get_mut(pixel..)?.first_chunk_mut()?;
         let id = self.id.get_mut(pixel..)?.first_chunk_mut()?;
@@ -226,11 +223,18 @@ impl Band<'_> {
 
     #[inline]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "both are inside")]
-    fn pixel(&self, row: i64, column: i64) -> usize {
+    pub(crate) fn pixel(&self, row: i64, column: i64) -> usize {
         (row - self.first_row) as usize * self.stride + column as usize
     }
 
-    fn last_row(&self) -> i64 {
+    /// Notes that something was drawn into these columns of a row.
+    #[inline]
+    pub(crate) fn touch(&mut self, columns: [i64; 2], row: i64) {
+        let [first, last] = columns;
+        self.tiles.touch(ends(&(first..=last)), ends(&(row..=row)));
+    }
+
+    pub(crate) fn last_row(&self) -> i64 {
         self.first_row + (self.depth.len() / self.stride) as i64 - 1
     }
 }

@@ -3,6 +3,7 @@
 use crate::{ColorMap, Error};
 use glam::DVec3;
 use puncta_core::{Record, Scene, inner_range};
+use std::fmt;
 
 /// The share of records that may lie outside of a range on either side.
 const OUTSIDE: f64 = 0.002;
@@ -34,6 +35,42 @@ pub enum Coloring<'a> {
         /// The values of the map's ends; `None` for nearly the range of the scene.
         range: Option<[f64; 2]>,
     },
+    /// What a function says of each record.
+    Each(Each<'a>),
+}
+
+/// A function that colors each record.
+///
+/// # Examples
+///
+/// ```
+/// use puncta_core::{Scene, Sphere};
+/// use puncta_cpu::{Coloring, Each};
+///
+/// let scene = Scene::new(vec![Sphere::default(), Sphere::new([0.0; 3], 3.0)]);
+/// let of = |index: u32| if scene.records[index as usize].radius > 1.0 { [255; 3] } else { [0; 3] };
+/// let colors = Coloring::Each(Each::new(&of)).colors(&scene)?;
+/// assert_eq!([colors.of(0), colors.of(1)], [[0; 3], [255; 3]]);
+/// # Ok::<(), puncta_cpu::Error>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct Each<'a> {
+    of: &'a (dyn Fn(u32) -> [u8; 3] + Sync),
+}
+
+impl<'a> Each<'a> {
+    /// The function gets an index into [`Scene::records`], of a record that is there, and gives an sRGB
+    /// color.
+    #[must_use]
+    pub const fn new(of: &'a (dyn Fn(u32) -> [u8; 3] + Sync)) -> Self {
+        Self { of }
+    }
+}
+
+impl fmt::Debug for Each<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Each").finish_non_exhaustive()
+    }
 }
 
 impl<'a> Coloring<'a> {
@@ -114,6 +151,7 @@ impl<'a> Coloring<'a> {
             Self::Height { axis, map, .. } => {
                 Source::Height((axis, scene.origin), &scene.records, map, range)
             }
+            Self::Each(each) => Source::Each(each, scene.records.len()),
         };
         Ok(Colors { source })
     }
@@ -133,6 +171,8 @@ enum Source<'a, R> {
     Scalar(&'a [f32], &'a ColorMap, [f64; 2]),
     /// An axis and the origin, and the records along it.
     Height((DVec3, DVec3), &'a [R], &'a ColorMap, [f64; 2]),
+    /// For so many records.
+    Each(Each<'a>, usize),
 }
 
 /// Of what a scene says nothing about.
@@ -145,7 +185,7 @@ impl<R: Record> Colors<'_, R> {
         let share = |value: f64, [low, high]: [f64; 2]| {
             if high > low { (value - low) / (high - low) } else { 0.5 }
         };
-        let index = index as usize;
+        let (id, index) = (index, index as usize);
         let found = match self.source {
             Source::Uniform(color) => Some(color),
             Source::Column(colors) => colors.get(index).map(|&[r, g, b, _]| [r, g, b]),
@@ -159,6 +199,7 @@ impl<R: Record> Colors<'_, R> {
                 let height = |record: &R| axis.dot(origin + record.position().as_dvec3());
                 records.get(index).map(|record| map.color(share(height(record), range)))
             }
+            Source::Each(each, records) => (index < records).then(|| (each.of)(id)),
         };
         found.unwrap_or(UNKNOWN)
     }

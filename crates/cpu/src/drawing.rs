@@ -7,6 +7,7 @@ drawn and what is skipped does not depend on the number of threads.
 
 use crate::{
     band::{Band, Piece},
+    shape::Shape,
     tiles::{self, Tiles},
 };
 use puncta_core::{Camera, NO_RECORD, Record, ScreenBound, View};
@@ -66,13 +67,14 @@ impl Drawing {
     pub(crate) fn draw<R: Record>(
         &mut self,
         (camera, ids): (&Camera, Option<&[u32]>),
-        records: &[R],
+        (shape, records): (&impl Shape<R>, &[R]),
         pieces: &[Piece<'_>],
     ) {
         let stride = self.stride;
         self.bands(|tiles, depth, id| {
             let first_row = tiles.first_row as i64;
-            Band { camera, ids, first_row, stride, depth, id, tiles }.draw(records, pieces);
+            let mut brush = shape.brush(camera, records);
+            Band { camera, ids, first_row, stride, depth, id, tiles }.draw(&mut brush, pieces);
         });
     }
 
@@ -117,7 +119,7 @@ fn fill<T: Copy>(values: &mut Vec<T>, count: usize, value: T) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::band::Members;
+    use crate::{Spheres, band::Members};
     use glam::DVec3;
     use proptest::prelude::*;
     use puncta_core::Sphere;
@@ -155,7 +157,7 @@ mod tests {
                     let [start, end] = [range.start, range.end].map(|i| u32::try_from(i).unwrap());
                     let members = Members::All(start..end);
                     let pieces = [Piece { bound, members, is_drawn: false.into() }];
-                    drawing.draw((&camera, None), &records, &pieces);
+                    drawing.draw((&camera, None), (&Spheres, &records), &pieces);
                     drawing.freshen();
                     let across = drawing.stride / tiles::SIDE;
                     for (tile, &deepest) in drawing.deepest.iter().enumerate() {

@@ -1,5 +1,6 @@
 /*!
-The renderer that is always there: exact spheres on the CPU, and shading.
+The renderer that is always there: exact spheres and glyphs on the CPU, and
+shading.
 
 ```
 use glam::DVec3;
@@ -33,9 +34,9 @@ assert_eq!(image.pixels.len(), 11 * 5);
 # Ok::<(), Box<dyn std::error::Error>>(())
 ```
 
-[`CpuRenderer`] draws spheres front to back into bands of rows, on all cores of the present rayon
-pool. What a pixel shows does not depend on the order of the spheres nor on the number of threads.
-[`shade`] makes an image of the picture afterwards, from nothing but ids.
+[`CpuRenderer`] draws spheres, or glyphs, front to back into bands of rows, on all cores of the present
+rayon pool. What a pixel shows does not depend on the order of the records nor on the number of threads.
+[`shade`] and [`shade_glyphs`] make an image of the picture afterwards, from nothing but ids.
 */
 
 mod band;
@@ -45,19 +46,26 @@ mod colormap;
 mod disc;
 mod drawing;
 mod error;
+mod image;
 mod knowledge;
 mod legend;
+mod levels;
 mod renderer;
 mod shade;
+mod shade_glyphs;
+mod shape;
+mod solid;
 mod survey;
 mod tiles;
 
 pub use crate::{
-    coloring::{Coloring, Colors},
+    coloring::{Coloring, Colors, Each},
     colormap::ColorMap,
     error::Error,
     legend::draw_legend,
     renderer::CpuRenderer,
     shade::{Shading, shade},
+    shade_glyphs::shade_glyphs,
+    shape::Spheres,
 };
 pub use puncta_core::Background;

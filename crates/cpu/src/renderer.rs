@@ -6,8 +6,10 @@ use crate::{
     cache,
     drawing::Drawing,
     knowledge::Knowledge,
+    shape::{Shape, Spheres},
     survey::{self, Outlook},
 };
+use puncta_avc::{Glyph, Glyphs};
 use puncta_core::{
     Amount, Camera, Content, Picture, Record, Renderer, ScreenBound, View, VisibleBrick,
 };
@@ -18,17 +20,23 @@ use std::sync::atomic::AtomicBool;
 const FIRST_SHARE: usize = 32;
 const FIRST_MIN: usize = 256;
 
-/// Draws spheres exactly, on all cores of the present rayon pool.
+/// Draws exactly, on all cores of the present rayon pool: spheres, or glyphs if it is made
+/// [of them](CpuRenderer::of).
 ///
-/// At each pixel the picture shows the nearest point where its ray enters a sphere, at a view depth
-/// of at least [`View::near`]; of equal depths the one with the lower [`puncta_core::Scene::id`]. So
-/// a sphere that holds the camera is not drawn, and what the near plane cuts open is hollow. A sphere
-/// that covers no pixel's centre is not seen, nor is a view depth beyond what `f32` holds.
+/// At each pixel the picture shows the nearest point where its ray enters a sphere, or meets a triangle
+/// of a glyph from in front, at a view depth of at least [`View::near`]; of equal depths the one with
+/// the lower [`puncta_core::Scene::id`]. So what holds the camera is not drawn, and what the near plane
+/// cuts open is hollow. What covers no pixel's centre is not seen, nor is a view depth beyond what
+/// `f32` holds.
 ///
 /// Against exact arithmetic, a silhouette is off by at most 1e-4 of a pixel and a view depth by at
 /// most 2⁻²² of itself. Set-up is in `f64`, from offsets relative to the eye; so neither a narrow
 /// angle nor the distance of the scene from the world's origin changes that. Only the last digits of
-/// `f64` set a limit: a sphere whose surface is nearer to the eye than 1e-8 of its radius.
+/// `f64` set a limit: a surface that is nearer to the eye than 1e-8 of its size.
+///
+/// Curved surfaces of glyphs are drawn as finely as the nearest point of their brick needs
+/// ([`Glyphs::tolerance`]). A record's triangles depend on the view and the record's brick, and on nothing
+/// that was drawn before.
 ///
 /// Bricks and blocks of bricks that lie behind what was drawn before are left out; the picture is the
 /// same as if they were drawn. It does not depend on the number of threads, and neither does what is
@@ -37,8 +45,9 @@ const FIRST_MIN: usize = 256;
 /// # Examples
 ///
 /// See the [crate's page](crate).
-#[derive(Clone, Debug, Default)]
-pub struct CpuRenderer {
+#[derive(Clone, Debug)]
+pub struct CpuRenderer<S = Spheres> {
+    shape: S,
     frame: Option<Drawing>,
     /// The ids of the picture before this one, and whether anything was drawn since.
     last: Vec<u32>,
@@ -47,10 +56,143 @@ pub struct CpuRenderer {
     outlook: Outlook,
 }
 
+impl Default for CpuRenderer {
+    fn default() -> Self {
+        Self::with(Spheres)
+    }
+}
+
+/// Draws spheres of the radius of each record.
 impl<R: Record> Renderer<R> for CpuRenderer {
     type Error = Error;
 
     fn begin(&mut self, view: &View) -> Result<(), Error> {
+        self.start(view);
+        Ok(())
+    }
+
+    fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
+        self.draw_bricks(content, bricks)
+    }
+
+    fn recall(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<u64, Error> {
+        self.draw_seen(content, bricks)
+    }
+
+    fn forget(&mut self) {
+        self.forget_seen();
+    }
+
+    fn survey(
+        &mut self,
+        content: &Content<'_, R>,
+        left: &mut [VisibleBrick],
+    ) -> Result<Option<u64>, Error> {
+        self.look_at(content, left)
+    }
+
+    fn finish(&mut self, _content: &Content<'_, R>) -> Result<Picture, Error> {
+        self.picture()
+    }
+}
+
+/// Draws the surfaces of glyphs.
+impl<G: Glyph> Renderer<G> for CpuRenderer<Glyphs<G>> {
+    type Error = Error;
+
+    fn begin(&mut self, view: &View) -> Result<(), Error> {
+        self.start(view);
+        Ok(())
+    }
+
+    fn draw(&mut self, content: &Content<'_, G>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
+        self.draw_bricks(content, bricks)
+    }
+
+    fn recall(&mut self, content: &Content<'_, G>, bricks: &[VisibleBrick]) -> Result<u64, Error> {
+        self.draw_seen(content, bricks)
+    }
+
+    fn forget(&mut self) {
+        self.forget_seen();
+    }
+
+    fn survey(
+        &mut self,
+        content: &Content<'_, G>,
+        left: &mut [VisibleBrick],
+    ) -> Result<Option<u64>, Error> {
+        self.look_at(content, left)
+    }
+
+    fn finish(&mut self, _content: &Content<'_, G>) -> Result<Picture, Error> {
+        self.picture()
+    }
+}
+
+impl<G: Glyph> CpuRenderer<Glyphs<G>> {
+    /// A renderer of these glyphs.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use puncta_avc::{Cuboid, Glyphs};
+    /// use puncta_core::{Pipeline, Scene, View};
+    /// use puncta_cpu::{CpuRenderer, Shading, shade_glyphs};
+    /// use puncta_grid::{Grid, GridConfig};
+    ///
+    /// let mut scene = Scene::new(vec![Cuboid::new([0.0; 3], [2.0, 1.0, 1.0])]);
+    /// let grid = Grid::sort_scene(&mut scene, &GridConfig::default())?;
+    /// let view = View::look_at(DVec3::Z * 9.0, DVec3::ZERO, DVec3::Y)?
+    ///     .with_size(7, 5)?
+    ///     .with_orthographic(2.0)?;
+    /// let mut pipeline = Pipeline::new((), CpuRenderer::of(Glyphs::<Cuboid>::new([])));
+    /// let picture = pipeline.render(&scene, &grid, &view)?;
+    /// // All that looks at the camera lies at one depth.
+    /// assert_eq!(picture.covered_pixels(), 5 * 3);
+    /// assert!(picture.depth.iter().all(|&depth| depth == 8.5 || depth == f32::INFINITY));
+    ///
+    /// let glyphs = pipeline.renderer().glyphs();
+    /// let image = shade_glyphs(glyphs, &scene, &grid, &view, &picture, &Shading::default())?;
+    /// assert_eq!(image.pixels.len(), 7 * 5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn of(glyphs: Glyphs<G>) -> Self {
+        Self::with(glyphs)
+    }
+
+    /// What is drawn.
+    #[must_use]
+    pub const fn glyphs(&self) -> &Glyphs<G> {
+        &self.shape
+    }
+
+    /// What is drawn, to change how.
+    ///
+    /// What was drawn since [`Renderer::begin`] stays as it was, so a change spoils that picture; the
+    /// next one is not concerned.
+    #[must_use]
+    pub const fn glyphs_mut(&mut self) -> &mut Glyphs<G> {
+        &mut self.shape
+    }
+}
+
+impl<S> CpuRenderer<S> {
+    fn with(shape: S) -> Self {
+        Self {
+            shape,
+            frame: None,
+            last: Vec::new(),
+            has_drawn: false,
+            knowledge: Knowledge::default(),
+            outlook: Outlook::default(),
+        }
+    }
+
+    /// Starts a new picture.
+    fn start(&mut self, view: &View) {
         self.knowledge.clear();
         self.outlook.clear();
         match &mut self.frame {
@@ -64,10 +206,17 @@ impl<R: Record> Renderer<R> for CpuRenderer {
             None => self.frame = Some(Drawing::new(view)),
         }
         self.has_drawn = false;
-        Ok(())
     }
 
-    fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
+    /// Draws bricks, and leaves out what is found hidden on the way.
+    fn draw_bricks<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        bricks: &[VisibleBrick],
+    ) -> Result<Amount, Error>
+    where
+        S: Shape<R>,
+    {
         let camera = self.prepare(content, bricks)?;
         let (mut rest, mut drawn) = (bricks, Amount::default());
         let mut count = (bricks.len() / FIRST_SHARE).max(FIRST_MIN);
@@ -85,7 +234,15 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         Ok(drawn)
     }
 
-    fn recall(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<u64, Error> {
+    /// Draws the records that were seen in the picture before.
+    fn draw_seen<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        bricks: &[VisibleBrick],
+    ) -> Result<u64, Error>
+    where
+        S: Shape<R>,
+    {
         let camera = self.prepare(content, bricks)?;
         let ids = cache::visible(&self.last);
         let runs = cache::runs(&ids, content.bricks, bricks);
@@ -100,12 +257,13 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         Ok(runs.iter().map(|(_, ids)| ids.len() as u64).sum())
     }
 
-    fn forget(&mut self) {
+    fn forget_seen(&mut self) {
         self.last.clear();
         self.has_drawn = false;
     }
 
-    fn survey(
+    /// Finds what the bricks that are left may still change.
+    fn look_at<R: Record>(
         &mut self,
         content: &Content<'_, R>,
         left: &mut [VisibleBrick],
@@ -121,7 +279,7 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         Ok(Some(self.outlook.count(drawing)))
     }
 
-    fn finish(&mut self, _content: &Content<'_, R>) -> Result<Picture, Error> {
+    fn picture(&self) -> Result<Picture, Error> {
         let drawing = self.frame.as_ref().ok_or(puncta_core::Error::NotBegun)?;
         let mut picture = Picture::new(drawing.view.width(), drawing.view.height())?;
         let (width, stride) = (picture.width as usize, drawing.stride);
@@ -134,9 +292,7 @@ impl<R: Record> Renderer<R> for CpuRenderer {
         }
         Ok(picture)
     }
-}
 
-impl CpuRenderer {
     /// Whether the bricks that were left when [`Renderer::survey`] was last asked may still change a
     /// pixel. Before that, all pixels are open.
     ///
@@ -170,7 +326,10 @@ impl CpuRenderer {
         content: &Content<'_, R>,
         camera: &Camera,
         bricks: &[VisibleBrick],
-    ) -> Result<Amount, Error> {
+    ) -> Result<Amount, Error>
+    where
+        S: Shape<R>,
+    {
         let bounds = self.knowledge.bounds(content, camera, &indices(bricks));
         let members = |brick: &VisibleBrick| {
             Members::All(content.bricks[brick.index() as usize].records.clone())
@@ -186,10 +345,14 @@ impl CpuRenderer {
         content: &Content<'_, R>,
         camera: &Camera,
         pieces: &[Piece<'_>],
-    ) -> Result<Amount, Error> {
+    ) -> Result<Amount, Error>
+    where
+        S: Shape<R>,
+    {
         let drawing = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
         let ids = content.scene.attributes.ids.as_deref();
-        drawing.draw((camera, ids), content.scene.records.as_slice(), pieces);
+        let records = content.scene.records.as_slice();
+        drawing.draw((camera, ids), (&self.shape, records), pieces);
         let amounts = pieces.iter().map(Piece::drawn);
         let drawn = amounts.fold(Amount::default(), |mut sum, amount| {
             sum += amount;

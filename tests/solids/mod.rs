@@ -1,0 +1,348 @@
+//! The reference for glyphs: every triangle of every record against every pixel's ray, in `f64`, in
+//! world coordinates; and the scenes that renderers are tested with.
+//!
+//! It shares no code with the renderers but what says how finely a record is drawn. For each pixel it
+//! tells the answers that may be given: one, unless the answer hangs on a hair. That is what the promise
+//! of exactness says: a ray moved by some [`Pixels`], or two depths within `DEPTH_ULPS` and what such a
+//! move does to them.
+
+#![allow(dead_code, reason = "not every test uses all of it")]
+
+use glam::{DVec3, Vec4};
+use puncta::{
+    Brick, Glyph, Glyphs, NO_RECORD, Picture, Scene, View,
+    avc::{Lens, Mesh, Sight},
+    core::{Bounder, Camera},
+};
+use rayon::prelude::*;
+
+pub(crate) mod scenes;
+
+/// How far a silhouette may be off, in pixels: what a renderer promises.
+pub(crate) type Pixels = f64;
+
+/// What the renderer on the CPU promises.
+pub(crate) const CPU: Pixels = 1e-4;
+
+/// Up to how many units in the last place of `f32` two depths count as equal.
+const DEPTH_ULPS: f64 = 4.0;
+
+/// The largest relative error of a view depth.
+const DEPTH_ERROR: f64 = 1.0 / 4_194_304.0;
+
+/// How a picture compares with the reference.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Verdict {
+    pub(crate) pixels: usize,
+    pub(crate) covered: usize,
+    pub(crate) undecided: usize,
+}
+
+impl Verdict {
+    fn plus(self, other: Self) -> Self {
+        Self {
+            pixels: self.pixels + other.pixels,
+            covered: self.covered + other.covered,
+            undecided: self.undecided + other.undecided,
+        }
+    }
+}
+
+/// A ray: where it starts, relative to the eye, and its direction, along which the view depth grows by
+/// one.
+#[derive(Clone, Copy, Debug)]
+struct Ray {
+    start: DVec3,
+    direction: DVec3,
+}
+
+impl Ray {
+    fn new(view: &View, column: f64, row: f64) -> Self {
+        let (x, y) = view.ray(column, row).into();
+        let aside = view.right() * x + view.up() * y;
+        if view.is_perspective() {
+            Self { start: DVec3::ZERO, direction: view.forward() + aside }
+        } else {
+            Self { start: aside, direction: view.forward() }
+        }
+    }
+
+    /// The distance between the ray and a point.
+    fn miss(&self, point: DVec3) -> f64 {
+        let direction = self.direction.normalize();
+        let offset = point - self.start;
+        (offset - direction * offset.dot(direction)).length()
+    }
+
+    /// The view depth at which it meets a triangle, and whether from in front (Möller and Trumbore,
+    /// *Fast, Minimum Storage Ray/Triangle Intersection*, 1997).
+    fn meet(&self, [a, b, c]: [DVec3; 3]) -> Option<(f64, bool)> {
+        let (u, v) = (b - a, c - a);
+        let p = self.direction.cross(v);
+        let determinant = u.dot(p);
+        if determinant == 0.0 {
+            return None;
+        }
+        let from = self.start - a;
+        let s = from.dot(p) / determinant;
+        let q = from.cross(u);
+        let t = self.direction.dot(q) / determinant;
+        let depth = v.dot(q) / determinant;
+        (s >= 0.0 && t >= 0.0 && s + t <= 1.0).then_some((depth, determinant > 0.0))
+    }
+}
+
+/// A pixel's ray, and eight around it.
+fn rays(view: &View, (column, row): (u32, u32), hair: Pixels) -> [Ray; 9] {
+    let diagonal = hair * std::f64::consts::FRAC_1_SQRT_2;
+    let around = [
+        [0.0, 0.0],
+        [hair, 0.0],
+        [-hair, 0.0],
+        [0.0, hair],
+        [0.0, -hair],
+        [diagonal, diagonal],
+        [diagonal, -diagonal],
+        [-diagonal, diagonal],
+        [-diagonal, -diagonal],
+    ];
+    around.map(|[x, y]| Ray::new(view, f64::from(column) + x, f64::from(row) + y))
+}
+
+/// A record's triangles, relative to the eye.
+#[derive(Clone, Debug)]
+struct Solid {
+    /// What the user knows it by.
+    id: u32,
+    center: DVec3,
+    radius: f64,
+    triangles: Vec<[DVec3; 3]>,
+}
+
+impl Solid {
+    /// Whether a ray, or one that is up to a hair away, may meet it.
+    fn is_near(&self, view: &View, ray: &Ray, hair: Pixels) -> bool {
+        let spread = if view.is_perspective() { self.center.length() + self.radius } else { 1.0 };
+        let reach = self.radius + 2.0 * hair * view.pixel_size() * spread;
+        ray.miss(self.center) <= reach * (1.0 + 1e-9)
+    }
+
+    /// The smallest view depth, from `near` on, at which a ray meets a triangle from in front.
+    fn enter(&self, ray: &Ray, near: f64) -> Option<f64> {
+        let meets = self.triangles.iter().filter_map(|&triangle| ray.meet(triangle));
+        let seen = meets.filter(|&(depth, is_front)| {
+            // What f32 cannot hold is not seen either.
+            is_front && depth >= near && depth <= f64::from(f32::MAX)
+        });
+        seen.map(|(depth, _)| depth).reduce(f64::min)
+    }
+}
+
+/// A record that a pixel may show.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    index: usize,
+    id: u32,
+    /// The depths at the rays of which it is met: at the pixel's own if there, the smallest and the
+    /// largest.
+    depth: f64,
+    depths: [f64; 2],
+    /// Whether all rays meet it, clearly beyond the near plane.
+    is_sure: bool,
+}
+
+/// All records of a scene, as they are seen in a view.
+#[derive(Clone, Debug)]
+pub(crate) struct Reference {
+    view: View,
+    solids: Vec<Solid>,
+}
+
+/// How finely the records of a scene are drawn, by record: the place where their brick begins.
+pub(crate) fn nearest(camera: &Camera, bricks: &[Brick], records: usize) -> Vec<f32> {
+    let bounder = Bounder::new(camera);
+    let mut nearest = vec![f32::NAN; records];
+    for brick in bricks.iter().rev() {
+        let bound = bounder.bound(&brick.bounds, brick.radius_max);
+        let range = brick.records.start as usize..brick.records.end as usize;
+        nearest[range].fill(bound.nearest);
+    }
+    nearest
+}
+
+impl Reference {
+    /// Checks on the way that the vertices of each record lie in its ball, and that in the box of the
+    /// scene's record.
+    pub(crate) fn new<G: Glyph>(
+        glyphs: &Glyphs<G>,
+        scene: &Scene<G>,
+        bricks: &[Brick],
+        view: &View,
+    ) -> Self {
+        let camera = Camera::new(view, scene.origin);
+        let lens = Lens::new(&camera, glyphs.tolerance);
+        let nearest = nearest(&camera, bricks, scene.records.len());
+        let cloud = glyphs.cloud(&scene.records);
+        let solid = |index: usize| {
+            let position = scene.records[index].position();
+            let form = G::form(&cloud, index, &lens.sight(position, nearest[index]));
+            let ball = G::ball(&cloud, index);
+            let place = scene.origin - view.eye();
+            Solid {
+                id: scene.id(u32::try_from(index).unwrap()),
+                center: place + ball.0.as_dvec3(),
+                radius: f64::from(ball.1),
+                triangles: triangles::<G>(&form, position.as_dvec3(), ball)
+                    .into_iter()
+                    .map(|triangle| triangle.map(|corner| place + corner))
+                    .collect(),
+            }
+        };
+        let solids = (0..scene.records.len()).into_par_iter().map(solid).collect();
+        Self { view: view.clone(), solids }
+    }
+
+    /// Compares a picture with the reference; the message names the first pixel that is wrong.
+    pub(crate) fn compare(&self, picture: &Picture, hair: Pixels) -> Result<Verdict, String> {
+        let width = self.view.width();
+        let row = |row: u32| -> Result<Verdict, String> {
+            let mut verdict = Verdict::default();
+            for column in 0..width {
+                let pixel = (row * width + column) as usize;
+                let (id, depth) = (picture.id[pixel], picture.depth[pixel]);
+                let (nearest, others) = self.answers((column, row), hair);
+                check(nearest, &others, id, depth).map_err(|what| {
+                    format!("column {column}, row {row}: {what}; {nearest:?} {others:?}")
+                })?;
+                verdict.pixels += 1;
+                verdict.covered += usize::from(id != NO_RECORD);
+                verdict.undecided += usize::from(!others.is_empty());
+            }
+            Ok(verdict)
+        };
+        let rows = (0..self.view.height()).into_par_iter().map(row);
+        rows.try_reduce(Verdict::default, |a, b| Ok(a.plus(b)))
+    }
+
+    /// The nearest record that surely is there, and those that would be seen if hairs fell otherwise.
+    fn answers(&self, pixel: (u32, u32), hair: Pixels) -> (Option<Candidate>, Vec<Candidate>) {
+        let rays = rays(&self.view, pixel, hair);
+        let near = self.view.near();
+        let near_hair = DEPTH_ULPS * ulp(near);
+        let mut candidates: Vec<Candidate> = Vec::new();
+        for (index, solid) in self.solids.iter().enumerate() {
+            if !solid.is_near(&self.view, &rays[0], hair) {
+                continue;
+            }
+            let hits = rays.map(|ray| solid.enter(&ray, near - near_hair));
+            let known = || hits.iter().flatten().copied();
+            let Some(low) = known().reduce(f64::min) else { continue };
+            let high = known().fold(low, f64::max);
+            let is_sure = hits.iter().all(|hit| hit.is_some_and(|depth| depth > near + near_hair));
+            let depth = hits[0].unwrap_or(low);
+            candidates.push(Candidate { index, id: solid.id, depth, depths: [low, high], is_sure });
+        }
+        let by_depth =
+            |a: &&Candidate, b: &&Candidate| a.depth.total_cmp(&b.depth).then(a.id.cmp(&b.id));
+        let nearest = candidates.iter().filter(|c| c.is_sure).min_by(by_depth).copied();
+        let limit = nearest.map_or(f64::INFINITY, |c| c.depths[1] + DEPTH_ULPS * ulp(c.depths[1]));
+        let is_other = |c: &Candidate| {
+            let is_nearest = nearest.is_some_and(|nearest| nearest.index == c.index);
+            // What is exactly the same is no hair: the lower id must win.
+            let is_same = |nearest: Candidate| {
+                let (a, b) = (&self.solids[nearest.index], &self.solids[c.index]);
+                c.is_sure && a.triangles == b.triangles && nearest.id < c.id
+            };
+            !is_nearest && c.depths[0] <= limit && !nearest.is_some_and(is_same)
+        };
+        (nearest, candidates.into_iter().filter(is_other).collect())
+    }
+}
+
+fn check(
+    nearest: Option<Candidate>,
+    others: &[Candidate],
+    id: u32,
+    depth: f32,
+) -> Result<(), String> {
+    let index = |c: &Candidate| u32::try_from(c.index).unwrap();
+    if id == NO_RECORD {
+        return match nearest {
+            Some(nearest) => Err(format!("shows nothing instead of {}", nearest.index)),
+            None if depth == f32::INFINITY => Ok(()),
+            None => Err(format!("shows nothing at {depth}")),
+        };
+    }
+    let mut answers = nearest.iter().chain(others);
+    let Some(shown) = answers.find(|c| index(c) == id) else {
+        return Err(format!("shows {id} at {depth} instead of {:?}", nearest.map(|c| c.index)));
+    };
+    let [low, high] = shown.depths;
+    let (low, high) = (low * (1.0 - DEPTH_ERROR), high * (1.0 + DEPTH_ERROR));
+    if (low..=high).contains(&f64::from(depth)) {
+        Ok(())
+    } else {
+        Err(format!("record {id} has depth {depth} instead of {low} to {high}"))
+    }
+}
+
+/// The triangles of a form around a position.
+fn triangles<G: Glyph>(
+    form: &G::Form,
+    position: DVec3,
+    ball: (glam::Vec3, f32),
+) -> Vec<[DVec3; 3]> {
+    let mesh = Mesh::of::<G>(form);
+    let places: Vec<DVec3> =
+        mesh.vertices.iter().map(|vertex| position + vertex.as_dvec3()).collect();
+    for place in &places {
+        let away = place.distance(ball.0.as_dvec3());
+        assert!(
+            away <= f64::from(ball.1),
+            "a vertex {away} from the middle of a ball of {}",
+            ball.1
+        );
+    }
+    mesh.triangles.iter().map(|corners| corners.map(|corner| places[corner as usize])).collect()
+}
+
+/// Pixels that a record must cover, seen by its brick's level of detail: `None` where that hangs on a
+/// hair. All of its triangles count, whatever side of them is seen, and those that are left out because
+/// they surely are not.
+pub(crate) fn footprint<G: Glyph>(
+    glyphs: &Glyphs<G>,
+    scene: &Scene<G>,
+    brick: &Brick,
+    (view, hair): (&View, Pixels),
+) -> Vec<Option<bool>> {
+    let camera = Camera::new(view, scene.origin);
+    let lens = Lens::new(&camera, glyphs.tolerance);
+    let cloud = glyphs.cloud(&scene.records);
+    let nearest = nearest(&camera, std::slice::from_ref(brick), scene.records.len());
+    let position = scene.records[0].position();
+    // From everywhere: nothing is left out.
+    let sight = Sight { eye: Vec4::ZERO, ..lens.sight(position, nearest[0]) };
+    let form = G::form(&cloud, 0, &sight);
+    Mesh::of::<G>(&form).check().unwrap();
+    let place = scene.origin - view.eye();
+    let triangles: Vec<[DVec3; 3]> = triangles::<G>(&form, position.as_dvec3(), G::ball(&cloud, 0))
+        .into_iter()
+        .map(|triangle| triangle.map(|corner| place + corner))
+        .collect();
+    let covers = |ray: Ray| {
+        let mut meets = triangles.iter().filter_map(|&triangle| ray.meet(triangle));
+        meets.any(|(depth, _)| depth >= view.near())
+    };
+    let pixel = |index: u32| {
+        let covered = rays(view, (index % view.width(), index / view.width()), hair).map(covers);
+        covered.iter().all(|&is| is == covered[0]).then_some(covered[0])
+    };
+    (0..view.width() * view.height()).map(pixel).collect()
+}
+
+/// The distance between neighboring `f32` at this size.
+fn ulp(x: f64) -> f64 {
+    #[expect(clippy::cast_possible_truncation, reason = "rounding is what is meant")]
+    let x = x as f32;
+    f64::from(x.next_up()) - f64::from(x)
+}
