@@ -48,7 +48,7 @@ pub struct BoxForm {
 
 impl Glyph for Cuboid {
     type Style = [u32; 0];
-    type Form = BoxForm;
+    type Form<'a> = BoxForm;
     const WGSL: &'static str = include_str!("../shader/cuboid.wgsl");
 
     #[inline]

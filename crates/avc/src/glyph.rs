@@ -44,8 +44,8 @@ pub trait Glyph: Record + Pod {
     /// What all records share: sizes, what is selected, when to draw what. A multiple of 4 bytes.
     type Style: Pod + Send + Sync + Debug + PartialEq;
 
-    /// What is drawn of a record: its type, its sizes, its level of detail.
-    type Form: Copy + Debug;
+    /// What is drawn of a record: its type, its sizes, its level of detail. It may borrow from the table.
+    type Form<'a>: Copy + Debug;
 
     /// The twin of this implementation.
     const WGSL: &'static str;
@@ -56,16 +56,16 @@ pub trait Glyph: Record + Pod {
     const HAS_NEIGHBORS: bool = false;
 
     /// The transfer function: what is drawn of a record.
-    fn form(cloud: &Cloud<'_, Self>, index: usize, sight: &Sight) -> Self::Form;
+    fn form<'a>(cloud: &Cloud<'a, Self>, index: usize, sight: &Sight) -> Self::Form<'a>;
 
     /// How many vertices and triangles a form has. Without triangles nothing is drawn.
-    fn size(form: &Self::Form) -> Size;
+    fn size(form: &Self::Form<'_>) -> Size;
 
     /// A vertex, relative to the position of the record.
-    fn vertex(form: &Self::Form, vertex: u32) -> Vec3;
+    fn vertex(form: &Self::Form<'_>, vertex: u32) -> Vec3;
 
     /// The vertices of a triangle, counterclockwise seen from outside.
-    fn triangle(form: &Self::Form, triangle: u32) -> [u32; 3];
+    fn triangle(form: &Self::Form<'_>, triangle: u32) -> [u32; 3];
 
     /// A ball that holds all vertices, whatever the view.
     fn ball(cloud: &Cloud<'_, Self>, index: usize) -> (Vec3, f32) {

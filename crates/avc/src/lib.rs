@@ -7,6 +7,7 @@ geometry is made by geometry and tessellation shaders. Here it is a function fro
 or a triangle ([`Glyph`]), written once in Rust and once in WGSL, that any stage of a pipeline can call.
 */
 
+mod arc;
 mod circle;
 mod cuboid;
 mod facet;
@@ -15,8 +16,11 @@ mod holders;
 mod mesh;
 mod sight;
 mod surface;
+#[cfg(test)]
+mod twins;
 
 pub use crate::{
+    arc::{Arc, ArcForm},
     circle::circle,
     cuboid::Cuboid,
     facet::{DepthRow, Facet},

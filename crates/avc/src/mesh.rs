@@ -16,7 +16,7 @@ pub struct Mesh {
 impl Mesh {
     /// All of a form.
     #[must_use]
-    pub fn of<G: Glyph>(form: &G::Form) -> Self {
+    pub fn of<G: Glyph>(form: &G::Form<'_>) -> Self {
         let Size { vertices, triangles } = G::size(form);
         if triangles == 0 {
             return Self::default();
