@@ -288,7 +288,7 @@ fn check(
 
 /// The triangles of a form around a position.
 fn triangles<G: Glyph>(
-    form: &G::Form,
+    form: &G::Form<'_>,
     position: DVec3,
     ball: (glam::Vec3, f32),
 ) -> Vec<[DVec3; 3]> {

@@ -63,6 +63,18 @@ impl Surface {
         self.facets.iter().filter_map(|facet| facet.depth(column, row)).reduce(f64::min)
     }
 
+    /// The same for the ray of a pixel or, if that meets nothing, for those of the eight points around it
+    /// at a distance of `hair` pixels.
+    #[must_use]
+    pub fn depth_around(&self, column: f64, row: f64, hair: f64) -> Option<f64> {
+        let diagonal = hair * std::f64::consts::FRAC_1_SQRT_2;
+        let straight = [(hair, 0.0), (-hair, 0.0), (0.0, hair), (0.0, -hair)];
+        let across = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+        let around = straight.into_iter().chain(across.map(|(x, y)| (x * diagonal, y * diagonal)));
+        let near = |(x, y): (f64, f64)| self.depth(column + x, row + y);
+        self.depth(column, row).or_else(|| around.filter_map(near).reduce(f64::min))
+    }
+
     /// The nearest point where the ray of a pixel meets it.
     #[must_use]
     pub fn meet(&self, lens: &Lens<'_>, column: f64, row: f64) -> Option<Meeting> {

@@ -39,7 +39,7 @@ const FACETS: u32 = 16384u;
 const BLOCK: u32 = 32u;
 
 // By how much edges are wider, in pixels: about what rounding may move them by.
-const WIDER: f32 = 6e-5;
+const WIDER: f32 = 2e-5;
 
 // Twice the area of the triangle with the origin, of exactly the opposite sign from `b` to `a`.
 fn side(a: vec2<f32>, b: vec2<f32>) -> f32 {

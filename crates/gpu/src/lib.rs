@@ -75,6 +75,7 @@ mod config;
 mod draw;
 mod error;
 mod exact;
+mod expand;
 mod finish;
 mod frame;
 mod gpu;

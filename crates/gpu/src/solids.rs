@@ -31,6 +31,10 @@ use std::{fmt, ops::Range};
 /// By how much a ball is larger than what it holds: more than rounding.
 const AROUND: f64 = 1.00001;
 
+/// How far a silhouette may be off, in pixels: where `f64` sees nothing, the depth is that of a ray so
+/// far away.
+const HAIR: f64 = 1e-3;
+
 /// How many large facets there is room for, and how many blocks of them.
 const FACETS: u64 = 16_384;
 const BLOCKS: u64 = 1 << 18;
@@ -46,7 +50,7 @@ pub struct Solids<G: Glyph> {
     over_blocks: Kernel,
     draw_blocks: Kernel,
     /// What glyphs share, and what of it was written last.
-    common: Option<wgpu::Buffer>,
+    pub(crate) common: Option<wgpu::Buffer>,
     written: Option<(Vec<u32>, u64)>,
 }
 
@@ -100,6 +104,40 @@ impl<G: Glyph> Solids<G> {
                 written: None,
             }
         })
+    }
+
+    /// Writes what all glyphs share, as far as it has changed.
+    pub(crate) fn share(&mut self, gpu: &Gpu, sharpness: f32) -> Result<(), Error> {
+        let style = bytemuck::bytes_of(&self.glyphs.style).chunks_exact(4);
+        let mut head = vec![sharpness.to_bits()];
+        head.extend(style.map(bytemuck::pod_read_unaligned::<u32>));
+        let table = &self.glyphs.table;
+        let now = (head, table.version());
+        if self.written.as_ref() == Some(&now) && self.common.is_some() {
+            return Ok(());
+        }
+        let bytes = (now.0.len() + table.len()) as u64 * 4;
+        let limit = gpu.binding_bytes_max();
+        if bytes > limit {
+            return Err(Error::TableTooLarge { bytes, limit });
+        }
+        let is_same =
+            |(head, version): &(Vec<u32>, u64)| head.len() == now.0.len() && *version == now.1;
+        let has_table = self.written.as_ref().is_some_and(is_same);
+        let buffer = match self.common.take() {
+            Some(buffer) if has_table => buffer,
+            // A buffer of just this size: indices are held within it.
+            _ => storage(gpu, "Solids::common", bytes)?,
+        };
+        gpu.guard("what glyphs share", || {
+            gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&now.0));
+            if !has_table {
+                let place = now.0.len() as u64 * 4;
+                gpu.queue.write_buffer(&buffer, place, bytemuck::cast_slice(table.as_slice()));
+            }
+        })?;
+        (self.common, self.written) = (Some(buffer), Some(now));
+        Ok(())
     }
 
     /// Draws chunks once.
@@ -167,37 +205,7 @@ impl<G: Glyph> Shape<G> for Solids<G> {
     }
 
     fn prepare(&mut self, gpu: &Gpu, camera: &Camera) -> Result<(), Error> {
-        let sharpness = Lens::new(camera, self.glyphs.tolerance).sharpness;
-        let style = bytemuck::bytes_of(&self.glyphs.style).chunks_exact(4);
-        let mut head = vec![sharpness.to_bits()];
-        head.extend(style.map(bytemuck::pod_read_unaligned::<u32>));
-        let table = &self.glyphs.table;
-        let now = (head, table.version());
-        if self.written.as_ref() == Some(&now) && self.common.is_some() {
-            return Ok(());
-        }
-        let bytes = (now.0.len() + table.len()) as u64 * 4;
-        let limit = gpu.binding_bytes_max();
-        if bytes > limit {
-            return Err(Error::TableTooLarge { bytes, limit });
-        }
-        let is_same =
-            |(head, version): &(Vec<u32>, u64)| head.len() == now.0.len() && *version == now.1;
-        let has_table = self.written.as_ref().is_some_and(is_same);
-        let buffer = match self.common.take() {
-            Some(buffer) if has_table => buffer,
-            // A buffer of just this size: indices are held within it.
-            _ => storage(gpu, "Solids::common", bytes)?,
-        };
-        gpu.guard("what glyphs share", || {
-            gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&now.0));
-            if !has_table {
-                let place = now.0.len() as u64 * 4;
-                gpu.queue.write_buffer(&buffer, place, bytemuck::cast_slice(table.as_slice()));
-            }
-        })?;
-        (self.common, self.written) = (Some(buffer), Some(now));
-        Ok(())
+        self.share(gpu, Lens::new(camera, self.glyphs.tolerance).sharpness)
     }
 
     fn close(&self, near: &Near<'_, G>) -> Close<Solid> {
@@ -242,7 +250,7 @@ impl<G: Glyph> Shape<G> for Solids<G> {
             surface.fill(&lens, &cloud, id as usize, nearest);
             let depth = |&(_, pixel): &(u32, usize)| {
                 let (column, row) = ((pixel % width) as f64, (pixel / width) as f64);
-                surface.depth(column, row).map(|depth| (pixel, depth))
+                surface.depth_around(column, row, HAIR).map(|depth| (pixel, depth))
             };
             pixels.iter().filter_map(depth).collect()
         };

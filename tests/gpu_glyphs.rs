@@ -1,0 +1,141 @@
+//! Glyphs on the GPU: their geometry is that of the CPU's twins, vertex by vertex, and their pictures are
+//! those of the reference and of the CPU.
+
+#![cfg(feature = "gpu")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::cast_possible_truncation,
+    clippy::print_stdout,
+    dead_code,
+    reason = "a test may panic and talk, its numbers are small, and it shares parts with others"
+)]
+
+use glam::Vec4;
+use gpu::{bits, differing, open};
+use puncta::{
+    Bricks, CpuRenderer, Cuboid, Depth, FrustumCull, Gpu, GpuConfig, GpuRenderer, Picture,
+    Pipeline, Scene, View,
+    avc::{Mesh, Sight},
+    gpu::{Extent, Solids},
+};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use solids::{
+    Reference,
+    scenes::{Sample, cloud, scenes},
+};
+
+mod gpu;
+mod solids;
+
+/// What the renderer on the GPU promises: see `solids::Pixels`.
+const GPU: solids::Pixels = 1e-3;
+
+type Draws<G> = Pipeline<(FrustumCull, Depth), GpuRenderer<Solids<G>>>;
+
+fn draws<G: Sample>(gpu: &Gpu) -> Draws<G> {
+    let renderer = GpuRenderer::of(gpu, G::glyphs(), GpuConfig::default()).unwrap();
+    Pipeline::new((FrustumCull, Depth::default()), renderer)
+}
+
+fn on_cpu<G: Sample>(scene: &Scene<G>, held: &G::Held, view: &View) -> Picture {
+    let renderer = CpuRenderer::of(G::glyphs());
+    Pipeline::new((FrustumCull, Depth::default()), renderer).render(scene, held, view).unwrap()
+}
+
+/// Views of records from anywhere, near and far.
+fn sights(random: &mut Pcg64Mcg, count: usize) -> Vec<Sight> {
+    let mut sight = || {
+        let eye = [0; 3].map(|_| 4.0 * random.random::<f32>() - 2.0);
+        let [x, y, z] = eye;
+        Sight {
+            eye: Vec4::new(x, y, z, f32::from(u8::from(random.random::<bool>()))),
+            nearest: 10_f32.powf(4.0 * random.random::<f32>() - 2.0),
+            sharpness: 10_f32.powf(4.0 * random.random::<f32>()),
+            pixel: 1e-3,
+        }
+    };
+    (0..count).map(|_| sight()).collect()
+}
+
+/// Counts and triangles are the same bit by bit, vertices up to some units in the last place of the size
+/// of the glyph.
+fn twins_agree<G: Sample>() {
+    let Some(gpu) = open(Extent::Core) else { return };
+    let glyphs = G::glyphs();
+    let mut renderer = GpuRenderer::of(&gpu, glyphs.clone(), GpuConfig::default()).unwrap();
+    let mut random = Pcg64Mcg::seed_from_u64(31);
+    let mut records = cloud::<G>(&mut random, 1500, 1.0, [1e-3, 0.5]);
+    // Zeros are nothing.
+    records[17] = G::zeroed();
+    let sights = sights(&mut random, records.len());
+    let cloud = glyphs.cloud(&records);
+    let (mut vertices, mut worst) = (0, 0.0_f32);
+    for (index, mesh) in renderer.meshes(&records, &sights).unwrap().iter().enumerate() {
+        let own = Mesh::of::<G>(&G::form(&cloud, index, &sights[index]));
+        assert_eq!(mesh.triangles, own.triangles, "{index} {:?}", records[index]);
+        assert_eq!(mesh.vertices.len(), own.vertices.len());
+        let size = own.vertices.iter().fold(0.0_f32, |size, vertex| size.max(vertex.length()));
+        for (a, b) in mesh.vertices.iter().zip(&own.vertices) {
+            worst = worst.max((a - b).length() / size);
+            vertices += 1;
+        }
+    }
+    println!("{vertices} vertices, off by {worst:e} of the size of their glyph at most");
+    assert!(vertices > 3000);
+    // A few roundings of a cosine and of what it is multiplied with.
+    assert!(worst < 8.0 * f32::EPSILON, "{worst:e}");
+}
+
+fn pictures_agree<G: Sample>(extent: Extent) {
+    let Some(gpu) = open(extent) else { return };
+    let mut pipeline = draws::<G>(&gpu);
+    let (mut pixels, mut other) = (0, 0);
+    for (name, mut scene, view) in scenes::<G>() {
+        let held = G::hold(&mut scene, 8);
+        pipeline.forget();
+        let picture = pipeline.render(&scene, &held, &view).unwrap();
+        let reference = Reference::new(&G::glyphs(), &scene, held.bricks(), &view);
+        let verdict =
+            reference.compare(&picture, GPU).unwrap_or_else(|what| panic!("{name}: {what}"));
+        let of_cpu = on_cpu(&scene, &held, &view);
+        let differ = differing(&picture, &of_cpu);
+        println!("{name:<28} covered {:>6} other {differ:>3}", verdict.covered);
+        // What was seen before is drawn first, and changes nothing.
+        let again = pipeline.render(&scene, &held, &view).unwrap();
+        assert!(bits(&again) == bits(&picture), "{name}: the second picture is another one");
+        assert!(verdict.covered > 500, "{name} shows too little");
+        // Edges that run through the centres of pixels hang on a hair by themselves.
+        if !name.contains("stacks") && !name.contains("from 1e6") {
+            pixels += picture.id.len();
+            other += differ;
+        }
+    }
+    println!("{other} of {pixels} pixels differ from those of the CPU");
+    assert!(other * 100_000 <= pixels, "{other} of {pixels} pixels");
+}
+
+macro_rules! glyphs {
+    ($($name:ident: $glyph:ty),+ $(,)?) => { $(mod $name {
+        use super::*;
+
+        #[test]
+        fn twins_are_the_same() {
+            twins_agree::<$glyph>();
+        }
+
+        #[test]
+        fn pictures_agree_with_the_reference() {
+            pictures_agree::<$glyph>(Extent::Full);
+        }
+
+        #[test]
+        fn pictures_of_core_webgpu_agree_with_the_reference() {
+            pictures_agree::<$glyph>(Extent::Core);
+        }
+    })+ };
+}
+
+glyphs! {
+    cuboids: Cuboid,
+}
