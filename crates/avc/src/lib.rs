@@ -7,22 +7,38 @@ geometry is made by geometry and tessellation shaders. Here it is a function fro
 or a triangle ([`Glyph`]), written once in Rust and once in WGSL, that any stage of a pipeline can call.
 */
 
+mod arrow;
+mod block;
 mod circle;
 mod cuboid;
+mod disc;
+mod extent;
 mod facet;
+mod frame;
 mod glyph;
 mod mesh;
+mod prism;
 mod sight;
 mod surface;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod twins;
+mod world;
 
 pub use crate::{
+    arrow::{Arrow, ArrowForm},
+    block::Block,
     circle::circle,
-    cuboid::Cuboid,
+    cuboid::{BoxForm, Cuboid},
+    disc::{Disc, DiscForm},
     facet::{DepthRow, Facet},
     glyph::{Cloud, Fault, Faults, Glyph, Glyphs, Size},
     mesh::Mesh,
+    prism::{Prism, PrismForm},
     sight::{CHORDS_MAX, Lens, Sight},
     surface::{Meeting, Surface},
+    world::{BlockWorld, BlockWorldError, Filling},
 };
 
 /// What [`Glyph::WGSL`] can use, but for the functions that read words: `Sight` and the functions of
