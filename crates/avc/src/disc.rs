@@ -126,7 +126,7 @@ mod tests {
         /// Half of the triangles face along the normal, and they are a polygon; the others are its back.
         #[test]
         fn a_disc_has_two_sides(disc in disc(), sight in sight()) {
-            let mesh = mesh_of(disc, &sight)?;
+            let mesh = mesh_of(disc, &sight.at_size(disc.radius))?;
             let chords = mesh.triangles.len() / 2;
             prop_assert_eq!(mesh.vertices.len(), chords + 2);
             let unit = Vec3::from(disc.normal).as_dvec3().normalize();

@@ -5,6 +5,13 @@ use glam::DVec3;
 use proptest::prelude::*;
 use std::fmt::Debug;
 
+impl Sight {
+    /// As many chords for this radius as there were for 1.
+    pub(crate) fn at_size(self, radius: f32) -> Self {
+        Self { sharpness: self.sharpness / radius, ..self }
+    }
+}
+
 /// What is drawn of a record, after a check: it is closed, it lies in its ball, and the ball in that of
 /// the record.
 pub(crate) fn mesh_of<G>(record: G, sight: &Sight) -> Result<Mesh, TestCaseError>
@@ -99,7 +106,7 @@ pub(crate) fn direction() -> impl Strategy<Value = [f32; 3]> {
     [number(), number(), number()].prop_filter("a direction has a length", is_long)
 }
 
-/// Levels of detail.
+/// Levels of detail for something of radius 1: see [`Sight::at_size`].
 pub(crate) fn sight() -> impl Strategy<Value = Sight> {
     prop_oneof![20 => 1.0_f32..200.0, 1 => 200.0_f32..5e3].prop_map(Sight::everywhere)
 }

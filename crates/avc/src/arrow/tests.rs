@@ -56,6 +56,7 @@ impl Shape {
 proptest! {
     #[test]
     fn an_arrow_points_from_its_start_along_its_vector(arrow in arrow(), sight in sight()) {
+        let sight = sight.at_size(arrow.shaft_radius.max(arrow.head_radius));
         let mesh = mesh_of(arrow, &sight)?;
         let shape = Shape::of(&arrow);
         let has_shaft = arrow.shaft_radius > 0.0;
@@ -88,6 +89,7 @@ proptest! {
 
     #[test]
     fn an_arrow_looks_outwards(arrow in arrow(), sight in sight()) {
+        let sight = sight.at_size(arrow.shaft_radius.max(arrow.head_radius));
         let mesh = mesh_of(arrow, &sight)?;
         let shape = Shape::of(&arrow);
         let position = arrow.position().as_dvec3();

@@ -25,6 +25,7 @@ fn prism() -> impl Strategy<Value = Prism> {
 proptest! {
     #[test]
     fn a_prism_stands_where_it_should(prism in prism(), sight in sight()) {
+        let sight = sight.at_size(prism.radius);
         let mesh = mesh_of(prism, &sight)?;
         let sides = match prism.sides {
             0 => sight.sides(prism.radius),
@@ -49,6 +50,7 @@ proptest! {
 
     #[test]
     fn a_prism_looks_outwards(prism in prism(), sight in sight()) {
+        let sight = sight.at_size(prism.radius);
         let mesh = mesh_of(prism, &sight)?;
         let walls = mesh.triangles.len() / 2 + 2;
         for (index, corners) in corners(&mesh).enumerate() {
@@ -69,10 +71,11 @@ proptest! {
     #[test]
     fn ends_are_left_out_if_they_face_away(
         prism in prism(),
-        sight in (1.0_f32..30.0).prop_map(Sight::everywhere),
+        sight in (1.0_f32..50.0).prop_map(Sight::everywhere),
         eye in [-3.0_f32..3.0, -3.0..3.0, -3.0..3.0],
         is_perspective in any::<bool>(),
     ) {
+        let sight = sight.at_size(prism.radius);
         let whole = mesh_of(prism, &sight)?;
         let eye = Vec3::from(eye) * prism.height;
         let sight = Sight { eye: eye.extend(if is_perspective { 1.0 } else { 0.0 }), ..sight };

@@ -26,7 +26,7 @@ fn filling(cell: [u16; 3], seed: u64, [opaque, clear]: [u64; 2]) -> Filling {
 }
 
 fn kind(cell: [u16; 3]) -> u8 {
-    (noise(cell, 77) | 1) as u8
+    noise(cell, 77).to_le_bytes()[0] | 1
 }
 
 /// A world as a list of cells.
@@ -42,9 +42,10 @@ impl Plain {
     }
 
     /// All cells by y, then x, then z.
-    fn order([width, depth, height]: [u32; 3]) -> impl Iterator<Item = [u16; 3]> {
+    fn order(dims: [u32; 3]) -> impl Iterator<Item = [u16; 3]> {
+        let [width, depth, height] = dims.map(|side| u16::try_from(side).unwrap());
         let columns = (0..depth).flat_map(move |y| (0..width).map(move |x| (x, y)));
-        columns.flat_map(move |(x, y)| (0..height).map(move |z| [x, y, z].map(|at| at as u16)))
+        columns.flat_map(move |(x, y)| (0..height).map(move |z| [x, y, z]))
     }
 
     fn at(&self, cell: I64Vec3) -> Filling {
@@ -54,7 +55,7 @@ impl Plain {
         if !is_in {
             return Filling::Air;
         }
-        self.cells[((cell.y * width + cell.x) * height + cell.z) as usize]
+        self.cells[usize::try_from((cell.y * width + cell.x) * height + cell.z).unwrap()]
     }
 
     /// The blocks with those faces whose neighbor does not hide them.
