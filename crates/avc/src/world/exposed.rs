@@ -47,10 +47,10 @@ impl BlockWorld {
         reach: f64,
         kind_of: impl Fn([u16; 3]) -> u8 + Sync,
     ) -> Vec<Block> {
-        let near = Near { eye, reach };
-        let hiding = |x, y, word| match self.opaque(x, y, word) {
-            0 => 0,
-            opaque => opaque & !near.word(x, y, word),
+        let near = Near::new(eye, reach);
+        let hiding = |x, y, word| {
+            let opaque = self.opaque(x, y, word);
+            if near.may_have(x, y, word) { opaque & !near.word(x, y, word) } else { opaque }
         };
         self.exposed(&hiding, &kind_of)
     }
@@ -174,22 +174,44 @@ impl Iterator for Bits {
 struct Near {
     eye: DVec3,
     reach: f64,
+    /// The first and the last cell along each axis that may be one of them.
+    ranges: [[usize; 2]; 3],
 }
 
 impl Near {
-    /// Those of a word of the column at x, y.
-    fn word(&self, x: usize, y: usize, word: usize) -> u64 {
-        let gap = |axis: usize, cell: usize| {
-            let (eye, low) = (self.eye[axis], cell as f64);
-            (low - eye).max(eye - (low + 1.0)).max(0.0)
-        };
-        let (across, along) = (gap(0, x), gap(1, y));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "casts saturate, and what is beyond the world does not matter"
+    )]
+    fn new(eye: DVec3, reach: f64) -> Self {
         // Written so that nothing is near to what is NaN.
-        if !(self.eye.is_finite() && across <= self.reach && along <= self.reach) {
-            return 0;
-        }
-        let rest = self.reach * self.reach - across * across;
-        let is_near = |z: usize| along * along + gap(2, z).powi(2) <= rest;
+        let is_place = eye.is_finite() && reach >= 0.0;
+        let range = |at: f64| {
+            // More than the reach, whatever rounding does.
+            let wide = reach * 1.000_001 + 2.0;
+            if is_place { [(at - wide) as usize, (at + wide).max(0.0) as usize] } else { [1, 0] }
+        };
+        Self { eye, reach, ranges: eye.to_array().map(range) }
+    }
+
+    /// Whether some cell of a word of the column at x, y may be near.
+    #[inline]
+    fn may_have(&self, x: usize, y: usize, word: usize) -> bool {
+        let [across, along, up] = self.ranges;
+        let is_in = |[first, last]: [usize; 2], at: usize| first <= at && at <= last;
+        is_in(across, x) && is_in(along, y) && is_in(up.map(|cell| cell / 64), word)
+    }
+
+    /// Those of a word of the column at x, y.
+    #[cold]
+    fn word(&self, x: usize, y: usize, word: usize) -> u64 {
+        let square = |axis: usize, cell: usize| {
+            let (eye, low) = (self.eye[axis], cell as f64);
+            (low - eye).max(eye - (low + 1.0)).max(0.0).powi(2)
+        };
+        let across = square(0, x) + square(1, y);
+        let is_near = |z: usize| across + square(2, z) <= self.reach * self.reach;
         (0..64).fold(0, |cells, bit| cells | u64::from(is_near(word * 64 + bit)) << bit)
     }
 }
