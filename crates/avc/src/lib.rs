@@ -8,27 +8,41 @@ or a triangle ([`Glyph`]), written once in Rust and once in WGSL, that any stage
 */
 
 mod arc;
+mod arrow;
+mod block;
 mod circle;
 mod cuboid;
+mod disc;
+mod extent;
 mod facet;
+mod frame;
 mod glyph;
 mod holders;
 mod mesh;
+mod prism;
 mod sight;
 mod surface;
 #[cfg(test)]
+mod testing;
+#[cfg(test)]
 mod twins;
+mod world;
 
 pub use crate::{
     arc::{Arc, ArcForm},
+    arrow::{Arrow, ArrowForm},
+    block::Block,
     circle::circle,
-    cuboid::Cuboid,
+    cuboid::{BoxForm, Cuboid},
+    disc::{Disc, DiscForm},
     facet::{DepthRow, Facet},
     glyph::{Cloud, Fault, Faults, Glyph, Glyphs, Size},
     holders::Holders,
     mesh::Mesh,
+    prism::{Prism, PrismForm},
     sight::{CHORDS_MAX, Lens, Sight},
     surface::{Meeting, Surface},
+    world::{BlockWorld, BlockWorldError, Filling},
 };
 
 /// What [`Glyph::WGSL`] can use, but for the functions that read words: `Sight` and the functions of
