@@ -10,12 +10,12 @@
     reason = "a test may panic and talk, its numbers are small, and it shares parts with others"
 )]
 
-use glam::Vec4;
+use glam::{DVec3, Vec3, Vec4};
 use gpu::{bits, differing, open};
 use puncta::{
-    Bricks, CpuRenderer, Cuboid, Depth, FrustumCull, Gpu, GpuConfig, GpuRenderer, Picture,
-    Pipeline, Scene, View,
-    avc::{Mesh, Sight},
+    Bricks, CpuRenderer, Cuboid, Depth, FrustumCull, Glyphs, Gpu, GpuConfig, GpuRenderer, Grid,
+    GridConfig, Picture, Pipeline, Scene, View,
+    avc::{Arc, Arrow, Block, BlockWorld, Disc, Filling, Mesh, Prism, Sight},
     gpu::{Extent, Solids},
 };
 use rand::{RngExt, SeedableRng};
@@ -138,4 +138,87 @@ macro_rules! glyphs {
 
 glyphs! {
     cuboids: Cuboid,
+    prisms: Prism,
+    discs: Disc,
+    arrows: Arrow,
+    arcs: Arc,
+}
+
+/// A world of some caves, and views of it from outside and from within a cave.
+fn world() -> (BlockWorld, Vec<View>) {
+    let mut random = Pcg64Mcg::seed_from_u64(41);
+    let mut world = BlockWorld::new([40, 36, 30]).unwrap();
+    let holes: Vec<([f32; 3], f32)> = (0..25)
+        .map(|_| {
+            let place = [40.0, 36.0, 30.0].map(|side| side * random.random::<f32>());
+            (place, 2.0 + 5.0 * random.random::<f32>())
+        })
+        .collect();
+    world.fill(|cell| {
+        let cell = Vec3::from(cell.map(|c| f32::from(c) + 0.5));
+        let is_hole =
+            |(place, radius): &([f32; 3], f32)| cell.distance(Vec3::from(*place)) < *radius;
+        if holes.iter().any(is_hole) { Filling::Air } else { Filling::solid(1) }
+    });
+    let middle = DVec3::new(20.0, 18.0, 15.0);
+    let mut views: Vec<View> = (0..4)
+        .map(|_| {
+            let axis = DVec3::from([0; 3].map(|_| random.random::<f64>() - 0.5)).normalize();
+            let view = View::look_at(
+                middle + axis * 60.0,
+                middle,
+                DVec3::Z + DVec3::new(axis.y, axis.z, axis.x) * 0.1,
+            );
+            view.unwrap().with_size(200, 150).unwrap()
+        })
+        .collect();
+    let within = Vec3::from(holes[0].0).as_dvec3();
+    let view = View::look_at(within, middle, DVec3::Z).unwrap().with_size(200, 150).unwrap();
+    views.push(view.with_perspective(1.8).unwrap());
+    let flat = views[0].clone().with_orthographic(50.0).unwrap();
+    views.push(flat);
+    (world, views)
+}
+
+/// What is left out of a world is not seen: its surface looks as all of its blocks do, on both renderers.
+#[test]
+fn surfaces_of_worlds_look_as_all_of_their_blocks() {
+    let (world, views) = world();
+    let config = GridConfig::longest_side(6);
+    let scene = |blocks: Vec<Block>| {
+        let mut scene = Scene::new(blocks);
+        let grid = Grid::sort_scene(&mut scene, &config).unwrap();
+        (scene, grid)
+    };
+    let (all, all_held) = scene(world.all(|_| 1));
+    let (surface, held) = scene(world.surface(|_| 1));
+    assert!(surface.records.len() * 2 < all.records.len());
+    let glyphs = || Glyphs::<Block>::new([]);
+    let depth = Depth::default;
+    let mut cpu = Pipeline::new((FrustumCull, depth()), CpuRenderer::of(glyphs()));
+    let gpu = gpu::gpu();
+    let mut other = 0;
+    for view in &views {
+        let expected = cpu.render(&all, &all_held, view).unwrap();
+        let found = cpu.render(&surface, &held, view).unwrap();
+        // Ids are those of other lists; cells are the same.
+        let cells = |scene: &Scene<Block>, picture: &Picture| -> Vec<Option<[u16; 3]>> {
+            let cell = |&id: &u32| scene.records.get(id as usize).map(|block| block.cell);
+            picture.id.iter().map(cell).collect()
+        };
+        assert!(expected.covered_pixels() > 3000);
+        assert!(cells(&all, &expected) == cells(&surface, &found));
+        assert!(expected.depth == found.depth);
+        let reference = Reference::new(&glyphs(), &surface, held.bricks(), view);
+        reference.compare(&found, solids::CPU).unwrap();
+        if let Some(gpu) = gpu {
+            let renderer = GpuRenderer::of(gpu, glyphs(), GpuConfig::default()).unwrap();
+            let mut pipeline = Pipeline::new((FrustumCull, depth()), renderer);
+            let picture = pipeline.render(&surface, &held, view).unwrap();
+            reference.compare(&picture, GPU).unwrap();
+            other += differing(&picture, &found);
+        }
+    }
+    println!("{other} pixels differ");
+    assert!(other <= 2, "{other} of 180000 pixels");
 }

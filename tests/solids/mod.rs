@@ -16,6 +16,7 @@ use puncta::{
 };
 use rayon::prelude::*;
 
+mod samples;
 pub(crate) mod scenes;
 
 /// How far a silhouette may be off, in pixels: what a renderer promises.
