@@ -38,7 +38,8 @@ impl BlockWorld {
     ///
     /// The eye lies in the coordinates of [`Block::cell`]. With a reach of the distance from the eye
     /// to the corners of the near plane, pictures are those of [`BlockWorld::all`], wherever the eye
-    /// is. If neither the eye nor the near plane is within a block, the faces that are added cannot be
+    /// is (only where a ray meets no more than the edge of blocks, it may be another of these). If
+    /// neither the eye nor the near plane is within a block, the faces that are added cannot be
     /// seen. If rays are parallel, a ball around the eye must hold all of the near plane that is seen.
     #[must_use]
     pub fn surface_around(
