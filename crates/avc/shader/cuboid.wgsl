@@ -9,17 +9,19 @@ fn glyph_position(at: u32) -> vec3<f32> {
     return vec3(real(at, 0u), real(at, 1u), real(at, 2u));
 }
 
-fn extent(at: u32) -> vec3<f32> {
+fn sides_of(at: u32) -> vec3<f32> {
     return vec3(real(at, 3u), real(at, 4u), real(at, 5u));
 }
 
 fn glyph_ball(at: u32) -> vec4<f32> {
-    return vec4(glyph_position(at), length(extent(at)) * 0.500001);
+    return vec4(glyph_position(at), length(sides_of(at)) * 0.500001);
 }
 
 fn glyph_form(at: u32, sight: Sight) -> Form {
-    let half = extent(at) * 0.5;
-    if !all(half > vec3(0.0)) {
+    let extent = sides_of(at);
+    let half = extent * 0.5;
+    let is_there = has_extent(extent.x) && has_extent(extent.y) && has_extent(extent.z);
+    if !(is_there && are_finite(at, 0u, 3u)) {
         return Form(half, 0u);
     }
     return Form(half, box_faces(sight, half));

@@ -49,15 +49,19 @@ fn circle(angle: f32) -> vec2<f32> {
     }
 }
 
+// Whether a face in the plane at `reach` along a direction may be seen, if the eye lies at `eye` along it.
+fn may_see(sight: Sight, eye: f32, reach: f32) -> bool {
+    let size = max(max(abs(sight.eye.x), abs(sight.eye.y)), abs(sight.eye.z));
+    return eye + 4e-6 * size >= reach * sight.eye.w;
+}
+
 // The faces of a box that may be seen: bit `2 axis + side`.
 fn box_faces(sight: Sight, half: vec3<f32>) -> u32 {
     var faces = 0u;
     for (var axis = 0u; axis < 3u; axis++) {
         let eye = sight.eye[axis];
-        let reach = half[axis] * sight.eye.w;
-        let slack = 1e-5 * (abs(eye) + reach);
-        faces |= u32(-eye >= reach - slack) << (2u * axis);
-        faces |= u32(eye >= reach - slack) << (2u * axis + 1u);
+        faces |= u32(may_see(sight, -eye, half[axis])) << (2u * axis);
+        faces |= u32(may_see(sight, eye, half[axis])) << (2u * axis + 1u);
     }
     return faces;
 }

@@ -45,8 +45,8 @@ fn glyph_form(at: u32, sight: Sight) -> Form {
         corners = sides(sight, radius);
     }
     let turn = real(at, 6u);
-    let sees_base = -sight.eye.z * 1.00001 >= -bottom * sight.eye.w * 0.99999;
-    let sees_top = sight.eye.z * 1.00001 >= top * sight.eye.w * 0.99999;
+    let sees_base = may_see(sight, -sight.eye.z, -bottom);
+    let sees_top = may_see(sight, sight.eye.z, top);
     let caps = u32(sees_base) | (u32(sees_top) << 1u);
     return Form(corners, radius, turn - floor(turn), bottom, top, caps);
 }

@@ -1,6 +1,9 @@
 //! Cuboids along the axes: 24 bytes each.
 
-use crate::{Cloud, Fault, Glyph, Sight, Size};
+use crate::{
+    Cloud, Fault, Glyph, Sight, Size,
+    extent::{self, are_finite, has_extent},
+};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use puncta_core::Record;
@@ -49,12 +52,14 @@ pub struct BoxForm {
 impl Glyph for Cuboid {
     type Style = [u32; 0];
     type Form<'a> = BoxForm;
-    const WGSL: &'static str = include_str!("../shader/cuboid.wgsl");
+    const WGSL: &'static str =
+        concat!(include_str!("../shader/extent.wgsl"), include_str!("../shader/cuboid.wgsl"));
 
     #[inline]
     fn form(cloud: &Cloud<'_, Self>, index: usize, sight: &Sight) -> BoxForm {
-        let half = Vec3::from(cloud.get(index).extent) * 0.5;
-        let is_there = half.cmpgt(Vec3::ZERO).all();
+        let Self { center, extent } = cloud.get(index);
+        let half = Vec3::from(extent) * 0.5;
+        let is_there = are_finite(&center) && extent.iter().all(|&side| has_extent(side));
         BoxForm { half, faces: if is_there { sight.faces(half) } else { 0 } }
     }
 
@@ -75,14 +80,9 @@ impl Glyph for Cuboid {
 
     fn fault(cloud: &Cloud<'_, Self>, index: usize) -> Option<Fault> {
         let Self { center, extent } = cloud.get(index);
-        let is_finite = |values: [f32; 3]| values.iter().all(|value| value.is_finite());
-        if !(is_finite(center) && is_finite(extent)) {
-            Some(Fault::NotFinite)
-        } else if extent.iter().any(|&side| side <= 0.0) {
-            Some(Fault::NoExtent)
-        } else {
-            None
-        }
+        let [x, y, z] = center;
+        let [a, b, c] = extent;
+        extent::fault(&[x, y, z, a, b, c], &extent)
     }
 }
 

@@ -21,8 +21,8 @@ use std::fmt::{self, Debug};
 /// * Triangles are counterclockwise, seen from outside. The surface is closed: each edge belongs to two
 ///   triangles, which go along it in opposite directions. A sheet is closed if it has two sides.
 /// * A form may leave out what surely cannot be seen from [`Sight::eye`], and nothing else.
-/// * The functions of [`Glyph::WGSL`] give the same, up to rounding. Counts must be the same bit by
-///   bit: they may only depend on comparisons of products, which round alike everywhere.
+/// * The functions of [`Glyph::WGSL`] give the same, up to rounding. Levels of detail must be the same
+///   bit by bit: they may only depend on comparisons of products, which round alike everywhere.
 ///
 /// # WGSL
 ///

@@ -125,10 +125,8 @@ impl Glyph for Prism {
             return PrismForm { sides: 0, radius, turn: 0.0, bottom, top, caps: 0 };
         }
         let sides = if record.sides == 0 { sight.sides(radius) } else { record.sides };
-        // More than what rounding may have done to the eye, by nothing but products.
-        let (eye, far) = (sight.eye.z, sight.eye.w);
-        let sees_base = -eye * 1.000_01 >= -bottom * far * 0.999_99;
-        let sees_top = eye * 1.000_01 >= top * far * 0.999_99;
+        let sees_base = sight.may_see(-sight.eye.z, -bottom);
+        let sees_top = sight.may_see(sight.eye.z, top);
         let caps = u32::from(sees_base) | u32::from(sees_top) << 1;
         PrismForm { sides, radius, turn: turn - turn.floor(), bottom, top, caps }
     }

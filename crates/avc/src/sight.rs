@@ -11,7 +11,8 @@ of sight is longer, which the largest slope of a ray in the picture allows for.
 # Why counts are the same on every machine
 
 Whether `n` chords are enough is decided by `n² depth >= R sharpness`: two products of `f32`, which
-all processors round alike. So the CPU and any GPU always draw the same triangles.
+all processors round alike. So levels of detail are those of the CPU on any GPU. What is left out because
+it surely is not seen ([`Sight::may_see`]) need not be the same: it changes no picture.
 */
 
 use glam::{DVec2, DVec3, Vec3, Vec4};
@@ -19,6 +20,10 @@ use puncta_core::Camera;
 
 /// The most chords of a full circle: enough for a radius of 3.4 million pixels at a tolerance of one.
 pub const CHORDS_MAX: u32 = 4096;
+
+/// More than what rounding may have moved an eye by, relative to its distance: it is turned and
+/// subtracted in `f32` on a GPU, with an error of some 10⁻⁷.
+const EYE_ERROR: f32 = 4e-6;
 
 /// What a transfer function knows of the view of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,13 +82,20 @@ impl Sight {
     pub fn faces(&self, half: Vec3) -> u32 {
         let mut faces = 0;
         for axis in 0..3 {
-            let (eye, half) = (self.eye[axis], half[axis] * self.eye.w);
-            // More than what rounding may have done to the eye.
-            let slack = 1e-5 * (eye.abs() + half);
-            faces |= u32::from(-eye >= half - slack) << (2 * axis);
-            faces |= u32::from(eye >= half - slack) << (2 * axis + 1);
+            let (eye, reach) = (self.eye[axis], half[axis]);
+            faces |= u32::from(self.may_see(-eye, reach)) << (2 * axis);
+            faces |= u32::from(self.may_see(eye, reach)) << (2 * axis + 1);
         }
         faces
+    }
+
+    /// Whether a face in the plane at `reach` along a direction may be seen, if the eye lies at `eye`
+    /// along it. What is told to be hidden surely is, however the eye was rounded.
+    #[must_use]
+    #[inline]
+    pub fn may_see(&self, eye: f32, reach: f32) -> bool {
+        let size = self.eye.x.abs().max(self.eye.y.abs()).max(self.eye.z.abs());
+        eye + EYE_ERROR * size >= reach * self.eye.w
     }
 }
 
