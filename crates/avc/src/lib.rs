@@ -13,6 +13,9 @@ mod cuboid;
 mod facet;
 mod glyph;
 mod mesh;
+mod node;
+mod polygon;
+mod runs;
 mod sight;
 mod surface;
 #[cfg(test)]
@@ -25,6 +28,9 @@ pub use crate::{
     facet::{DepthRow, Facet},
     glyph::{Cloud, Fault, Faults, Glyph, Glyphs, Size},
     mesh::Mesh,
+    node::{Node, NodeForm, NodeStyle, Trajectories, TrajectoryFaults},
+    polygon::{Polygon, PolygonError, PolygonFailure, PolygonForm, PolygonSet},
+    runs::Runs,
     sight::{CHORDS_MAX, Lens, Sight},
     surface::{Meeting, Surface},
 };

@@ -1,6 +1,6 @@
 //! The twins in WGSL are valid and declare what they must.
 
-use crate::{Arc, Cuboid, Glyph, PRELUDE};
+use crate::{Arc, Cuboid, Glyph, Node, PRELUDE, Polygon};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// What renderers add: the functions that read words, and calls of all that a glyph declares.
@@ -37,4 +37,6 @@ fn check<G: Glyph>() {
 fn twins_are_valid() {
     check::<Cuboid>();
     check::<Arc>();
+    check::<Node>();
+    check::<Polygon>();
 }
