@@ -67,14 +67,14 @@ proptest! {
         let glyphs = Glyphs::<Node>::new(style);
         let cloud = glyphs.cloud(&nodes);
         prop_assert_eq!(glyphs.faults(&nodes).sum(), 0);
-        for index in 0..nodes.len() {
+        for (index, node) in nodes.iter().enumerate() {
             let form = Node::form(&cloud, index, &sight(chords));
             let mesh = Mesh::of::<Node>(&form);
             if let Err(what) = mesh.check() {
                 prop_assert!(false, "{} {:?}", what, form);
             }
             let (center, radius) = Node::ball(&cloud, index);
-            let center = (center - nodes[index].position()).as_dvec3();
+            let center = (center - node.position()).as_dvec3();
             for vertex in &mesh.vertices {
                 // The centre is rounded where nodes lie far from the origin.
                 let far = vertex.as_dvec3().distance(center);
