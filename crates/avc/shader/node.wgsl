@@ -220,7 +220,10 @@ fn glyph_ball(at: u32) -> vec4<f32> {
         way = next.position - node.position;
     }
     let reach = max(radius_max() * 1.42, ball_radius());
-    return vec4(node.position + way * 0.5, (length(way) * 0.5 + reach) * 1.00001);
+    let center = node.position + way * 0.5;
+    // The centre is rounded, on three axes.
+    let rounding = largest(center) * 1.2e-7;
+    return vec4(center, (length(way) * 0.5 + reach) * 1.00001 + rounding);
 }
 
 fn glyph_form(at: u32, sight: Sight) -> Form {

@@ -279,7 +279,10 @@ impl Glyph for Node {
         let step = if node.leads_to(&next) { delta(&node, &next) } else { Vec3::ZERO };
         let step = if is_short(step) { Vec3::ZERO } else { step };
         let reach = (cloud.style.radius_max().unwrap_or(0.0) * 1.42).max(cloud.style.ball());
-        (node.position() + step * 0.5, (step.length() * 0.5 + reach) * 1.000_01)
+        let center = node.position() + step * 0.5;
+        // The centre is rounded, on three axes.
+        let rounding = extent(center) * 1.2e-7;
+        (center, (step.length() * 0.5 + reach) * 1.000_01 + rounding)
     }
 
     fn fault(cloud: &Cloud<'_, Self>, index: usize) -> Option<Fault> {

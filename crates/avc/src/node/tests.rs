@@ -7,7 +7,7 @@ use puncta_core::Bricks;
 /// Ways between nodes: any, straight on, back, a little aside, at a right angle, and none.
 fn paths() -> impl Strategy<Value = Vec<[f32; 3]>> {
     let way = [-2.0..2.0_f32, -2.0..2.0_f32, -2.0..2.0_f32];
-    let start = [-100.0..100.0_f32, -100.0..100.0_f32, -100.0..100.0_f32];
+    let start = [-100.0..100.0_f32, -100.0..100.0_f32, -1e6..1e6_f32];
     (start, prop::collection::vec((way, 0..8_u8, 0.01..2.0_f32), 0..12)).prop_map(
         |(start, steps)| {
             let (mut at, mut last) = (Vec3::from(start), Vec3::X);
@@ -74,7 +74,7 @@ proptest! {
                 prop_assert!(false, "{} {:?}", what, form);
             }
             let (center, radius) = Node::ball(&cloud, index);
-            let center = (center - node.position()).as_dvec3();
+            let center = center.as_dvec3() - node.position().as_dvec3();
             for vertex in &mesh.vertices {
                 // The centre is rounded where nodes lie far from the origin.
                 let far = vertex.as_dvec3().distance(center);
