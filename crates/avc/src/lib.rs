@@ -19,7 +19,10 @@ mod frame;
 mod glyph;
 mod holders;
 mod mesh;
+mod node;
+mod polygon;
 mod prism;
+mod runs;
 mod sight;
 mod surface;
 #[cfg(test)]
@@ -39,7 +42,10 @@ pub use crate::{
     glyph::{Cloud, Fault, Faults, Glyph, Glyphs, Size},
     holders::Holders,
     mesh::Mesh,
+    node::{Node, NodeForm, NodeStyle, Trajectories, TrajectoryFaults},
+    polygon::{Polygon, PolygonError, PolygonFailure, PolygonForm, PolygonSet},
     prism::{Prism, PrismForm},
+    runs::Runs,
     sight::{CHORDS_MAX, Lens, Sight},
     surface::{Meeting, Surface},
     world::{BlockWorld, BlockWorldError, Filling},

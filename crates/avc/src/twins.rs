@@ -3,7 +3,7 @@ Tests of the shaders of all glyphs, without any driver: put together with [`PREL
 nothing beyond core WebGPU, and declare what [`Glyph`] says.
 */
 
-use crate::{Arc, Arrow, Block, Cuboid, Disc, Glyph, PRELUDE, Prism};
+use crate::{Arc, Arrow, Block, Cuboid, Disc, Glyph, Node, PRELUDE, Polygon, Prism};
 use naga::{
     Module,
     valid::{Capabilities, ValidationFlags, Validator},
@@ -49,13 +49,15 @@ fn composed<G: Glyph>() -> String {
     [PRELUDE, READING, G::WGSL, CALLING].concat()
 }
 
-fn all() -> [(&'static str, String); 6] {
+fn all() -> [(&'static str, String); 8] {
     [
         ("arc", composed::<Arc>()),
         ("arrow", composed::<Arrow>()),
         ("block", composed::<Block>()),
         ("cuboid", composed::<Cuboid>()),
         ("disc", composed::<Disc>()),
+        ("node", composed::<Node>()),
+        ("polygon", composed::<Polygon>()),
         ("prism", composed::<Prism>()),
     ]
 }
