@@ -13,6 +13,7 @@ mod facet;
 mod glyph;
 mod mesh;
 mod sight;
+mod spans;
 mod surface;
 
 pub use crate::{
@@ -22,6 +23,7 @@ pub use crate::{
     glyph::{Cloud, Fault, Faults, Glyph, Glyphs, Size},
     mesh::Mesh,
     sight::{CHORDS_MAX, Lens, Sight},
+    spans::Spans,
     surface::{Meeting, Surface},
 };
 
