@@ -69,7 +69,9 @@ impl Spans {
             if b.y < a.y {
                 first = first.max((x + (1.0 - self.slack)) as i64);
             } else if b.y > a.y {
-                last = last.min(if x < 0.0 { -1 } else { (x + self.slack) as i64 });
+                // Of NaN nothing follows.
+                let end = if x >= 0.0 { (x + self.slack) as i64 } else { -1 };
+                last = if x.is_nan() { last } else { last.min(end) };
             }
         }
         while first <= last && !covers(&self.corners, first as f64, row) {
