@@ -209,6 +209,35 @@ fn cuboids_have_no_cracks() {
     }
 }
 
+/// A block of cuboids side by side shows no gap between them, also where their sides run through the
+/// centres of pixels.
+#[test]
+fn abutting_cuboids_leave_no_gap() {
+    let place = |i: u16| [0, 3, 6].map(|shift| f32::from(i >> shift & 7) * 0.25 - 0.875);
+    let small: Vec<Cuboid> = (0..512).map(|i| Cuboid::new(place(i), [0.25; 3])).collect();
+    let mut random = Pcg64Mcg::seed_from_u64(11);
+    // The distance of the centres of pixels is a power of two.
+    let straight = View::look_at(DVec3::Z * 3.0, DVec3::ZERO, DVec3::Y).unwrap();
+    let straight = straight.with_size(161, 161).unwrap();
+    let mut views = vec![straight.clone(), straight.with_orthographic(161.0 / 64.0).unwrap()];
+    views.extend((0..30).map(|_| view(&mut random, 3.0, DVec3::ZERO)));
+    for view in views {
+        let draw = |records: Vec<Cuboid>| {
+            let mut scene = Scene::new(records);
+            let held = Cuboid::hold(&mut scene, 4);
+            (render(&scene, &held, &view), scene, held)
+        };
+        let (picture, ..) = draw(small.clone());
+        let (_, scene, held) = draw(vec![Cuboid::new([0.0; 3], [2.0; 3])]);
+        let expected = footprint(&Cuboid::glyphs(), &scene, &held.bricks()[0], (&view, CPU));
+        let decided =
+            expected.into_iter().zip(&picture.id).filter(|(expected, _)| expected.is_some());
+        for (pixel, (expected, id)) in decided.enumerate() {
+            assert_eq!(expected, Some(*id != NO_RECORD), "{pixel} {view:?}");
+        }
+    }
+}
+
 #[test]
 fn threads_and_grids_do_not_change_a_byte() {
     for (name, scene, view) in scenes::<Cuboid>().into_iter().step_by(2) {

@@ -109,10 +109,10 @@ pub(crate) fn scenes<G: Sample>() -> Vec<(String, Scene<G>, View)> {
 
     // Sides are seen edge-on, and edges run through the centres of pixels.
     let straight = View::look_at(DVec3::new(0.0, 0.0, 3.0), origin, DVec3::Y).unwrap();
-    let straight = straight.with_size(160, 120).unwrap();
+    let straight = straight.with_size(161, 121).unwrap();
     let scene = || Scene::new(stacks(&mut Pcg64Mcg::seed_from_u64(3)));
     add("stacks from the front".into(), scene(), straight.clone());
-    add("stacks, orthographic".into(), scene(), straight.with_orthographic(1.875).unwrap());
+    add("stacks, orthographic".into(), scene(), straight.with_orthographic(121.0 / 64.0).unwrap());
     scenes
 }
 

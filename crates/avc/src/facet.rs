@@ -4,13 +4,14 @@ Facets: triangles before a camera, in `f64`, and what the ray of a pixel meets o
 A pixel shows a facet if the ray through its centre meets the triangle, edges included, from in front.
 That an edge belongs to both of its triangles leaves no gap between them; where both are met, depth and
 id decide as always. So that rounding opens no gap either, the side of an edge on which a pixel lies is
-computed from the same numbers for both: corners relative to the pixel, the lower one first.
+computed from the same numbers for both: corners relative to the pixel.
 
 Depths come from the plane of the triangle, relative to its first corner. In perspective the inverse
 depth is linear over the picture: with the normal `N`, the corner `c` and the ray `d` it is
 `(N.d) / (N.c)`.
 */
 
+use crate::Spans;
 use glam::{DVec2, DVec3};
 use puncta_core::Camera;
 
@@ -31,12 +32,15 @@ pub struct Facet {
     normal: DVec3,
 }
 
-/// The side of the edge from `a` to `b` on which the origin lies: positive on the one, negative on the
-/// other, of exactly the same size for the edge from `b` to `a`.
+/// Whether a pixel lies inside of a triangle, or on its edge.
+///
+/// The side of an edge is a difference of two products, which are the same two for the edge from `b` to
+/// `a`: so it is exactly the opposite number there.
 #[inline]
-fn side(a: DVec2, b: DVec2) -> f64 {
-    let is_lower = a.x < b.x || (a.x == b.x && a.y < b.y);
-    if is_lower { a.perp_dot(b) } else { -b.perp_dot(a) }
+pub(crate) fn covers(corners: &[DVec2; 3], column: f64, row: f64) -> bool {
+    let pixel = DVec2::new(column, row);
+    let [a, b, c] = corners.map(|corner| corner - pixel);
+    (a.perp_dot(b) >= 0.0) & (b.perp_dot(c) >= 0.0) & (c.perp_dot(a) >= 0.0)
 }
 
 impl Facet {
@@ -120,9 +124,7 @@ impl Facet {
     #[must_use]
     #[inline]
     pub fn covers(&self, column: f64, row: f64) -> bool {
-        let pixel = DVec2::new(column, row);
-        let [a, b, c] = self.corners.map(|corner| corner - pixel);
-        side(a, b) >= 0.0 && side(b, c) >= 0.0 && side(c, a) >= 0.0
+        covers(&self.corners, column, row)
     }
 
     /// What the depths of a row need.
@@ -150,52 +152,33 @@ impl Facet {
         self.normal.normalize_or_zero()
     }
 
+    /// The pixels that it covers in a picture of so many columns and rows.
+    #[must_use]
+    #[inline]
+    pub fn spans(&self, size: [u32; 2]) -> Spans {
+        Spans::new(self.corners, size)
+    }
+
     /// The rows that it may cover, first and last, in a picture of `height` rows. Empty if the first
     /// is larger.
     #[must_use]
     #[inline]
     pub fn rows(&self, height: u32) -> [i64; 2] {
-        let y = self.corners.map(|corner| corner.y);
-        within([y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2])], height)
+        self.spans([1, height]).rows()
     }
 
     /// The columns that it may cover.
     #[must_use]
     #[inline]
     pub fn columns(&self, width: u32) -> [i64; 2] {
-        let x = self.corners.map(|corner| corner.x);
-        within([x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2])], width)
+        self.spans([width, 1]).columns()
     }
 
     /// The columns that it covers in a row, first and last. Empty if the first is larger.
-    ///
-    /// Where edges meet a row is a guess, which is put right by the test of [`Facet::covers`].
     #[must_use]
     #[inline]
     pub fn span(&self, row: f64, width: u32) -> [i64; 2] {
-        let [mut first, mut last] = self.columns(width);
-        for i in 0..3 {
-            let (a, b) = (self.corners[i], self.corners[(i + 1) % 3]);
-            let edge = b - a;
-            if edge.y == 0.0 {
-                continue;
-            }
-            let x = a.x + edge.x * ((row - a.y) / edge.y);
-            // Inside is where the cross product of the edge and what leads to the pixel is positive.
-            #[expect(clippy::cast_possible_truncation, reason = "casts saturate")]
-            if edge.y < 0.0 {
-                first = first.max(x.ceil() as i64 - 1);
-            } else {
-                last = last.min((x.floor() as i64).saturating_add(1));
-            }
-        }
-        while first <= last && !self.covers(first as f64, row) {
-            first += 1;
-        }
-        while first < last && !self.covers(last as f64, row) {
-            last -= 1;
-        }
-        [first, last]
+        self.spans([width, 1]).of(row)
     }
 }
 
@@ -204,13 +187,6 @@ fn crossing(a: DVec3, b: DVec3, near: f64) -> DVec3 {
     let (a, b) = if a.z < b.z { (a, b) } else { (b, a) };
     let share = (near - a.z) / (b.z - a.z);
     (a + (b - a) * share).truncate().extend(near)
-}
-
-/// The whole numbers between two, within a picture of `count` pixels.
-#[inline]
-#[expect(clippy::cast_possible_truncation, reason = "casts saturate")]
-fn within([low, high]: [f64; 2], count: u32) -> [i64; 2] {
-    [low.ceil().max(0.0) as i64, high.floor().min(f64::from(count) - 1.0) as i64]
 }
 
 /// The depths of a row of a facet.
@@ -325,7 +301,7 @@ mod tests {
                     let corners = facet.corners.map(|corner| corner - DVec2::new(x, y));
                     (0..3).all(|i| {
                         let (a, b) = (corners[i], corners[(i + 1) % 3]);
-                        side(a, b) > 1e-9 * (1.0 + (b - a).length())
+                        a.perp_dot(b) > 1e-9 * (1.0 + (b - a).length())
                     })
                 };
                 if whole.iter().any(is_deep) {

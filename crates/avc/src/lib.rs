@@ -24,6 +24,7 @@ mod polygon;
 mod prism;
 mod runs;
 mod sight;
+mod spans;
 mod surface;
 #[cfg(test)]
 mod testing;
@@ -47,6 +48,7 @@ pub use crate::{
     prism::{Prism, PrismForm},
     runs::Runs,
     sight::{CHORDS_MAX, Lens, Sight},
+    spans::Spans,
     surface::{Meeting, Surface},
     world::{BlockWorld, BlockWorldError, Filling},
 };

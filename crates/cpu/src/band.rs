@@ -227,6 +227,13 @@ impl Band<'_> {
         (row - self.first_row) as usize * self.stride + column as usize
     }
 
+    /// Whether all pixels of the tiles around these, which lie in this band, are nearer than a depth.
+    #[inline]
+    pub(crate) fn hides(&mut self, columns: [i64; 2], rows: [i64; 2], nearest: f32) -> bool {
+        let ends = |[first, last]: [i64; 2]| ends(&(first..=last));
+        self.tiles.hide_around(ends(columns), ends(rows), (nearest, self.depth))
+    }
+
     /// Notes that something was drawn into these columns of a row.
     #[inline]
     pub(crate) fn touch(&mut self, columns: [i64; 2], row: i64) {

@@ -51,6 +51,7 @@ mod knowledge;
 mod legend;
 mod levels;
 mod renderer;
+mod renders;
 mod shade;
 mod shade_glyphs;
 mod shape;

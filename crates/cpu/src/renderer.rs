@@ -9,10 +9,7 @@ use crate::{
     shape::{Shape, Spheres},
     survey::{self, Outlook},
 };
-use puncta_avc::{Glyph, Glyphs};
-use puncta_core::{
-    Amount, Camera, Content, Picture, Record, Renderer, ScreenBound, View, VisibleBrick,
-};
+use puncta_core::{Amount, Camera, Content, Picture, Record, ScreenBound, View, VisibleBrick};
 use std::sync::atomic::AtomicBool;
 
 /// The share of the bricks that are drawn before blocks are tested for the first time, and the
@@ -35,7 +32,7 @@ const FIRST_MIN: usize = 256;
 /// `f64` set a limit: a surface that is nearer to the eye than 1e-8 of its size.
 ///
 /// Curved surfaces of glyphs are drawn as finely as the nearest point of their brick needs
-/// ([`Glyphs::tolerance`]). A record's triangles depend on the view and the record's brick, and on nothing
+/// ([`puncta_avc::Glyphs::tolerance`]). A record's triangles depend on the view and the record's brick, and on nothing
 /// that was drawn before.
 ///
 /// Bricks and blocks of bricks that lie behind what was drawn before are left out; the picture is the
@@ -47,7 +44,7 @@ const FIRST_MIN: usize = 256;
 /// See the [crate's page](crate).
 #[derive(Clone, Debug)]
 pub struct CpuRenderer<S = Spheres> {
-    shape: S,
+    pub(crate) shape: S,
     frame: Option<Drawing>,
     /// The ids of the picture before this one, and whether anything was drawn since.
     last: Vec<u32>,
@@ -62,125 +59,8 @@ impl Default for CpuRenderer {
     }
 }
 
-/// Draws spheres of the radius of each record.
-impl<R: Record> Renderer<R> for CpuRenderer {
-    type Error = Error;
-
-    fn begin(&mut self, view: &View) -> Result<(), Error> {
-        self.start(view);
-        Ok(())
-    }
-
-    fn draw(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
-        self.draw_bricks(content, bricks)
-    }
-
-    fn recall(&mut self, content: &Content<'_, R>, bricks: &[VisibleBrick]) -> Result<u64, Error> {
-        self.draw_seen(content, bricks)
-    }
-
-    fn forget(&mut self) {
-        self.forget_seen();
-    }
-
-    fn survey(
-        &mut self,
-        content: &Content<'_, R>,
-        left: &mut [VisibleBrick],
-    ) -> Result<Option<u64>, Error> {
-        self.look_at(content, left)
-    }
-
-    fn finish(&mut self, _content: &Content<'_, R>) -> Result<Picture, Error> {
-        self.picture()
-    }
-}
-
-/// Draws the surfaces of glyphs.
-impl<G: Glyph> Renderer<G> for CpuRenderer<Glyphs<G>> {
-    type Error = Error;
-
-    fn begin(&mut self, view: &View) -> Result<(), Error> {
-        self.start(view);
-        Ok(())
-    }
-
-    fn draw(&mut self, content: &Content<'_, G>, bricks: &[VisibleBrick]) -> Result<Amount, Error> {
-        self.draw_bricks(content, bricks)
-    }
-
-    fn recall(&mut self, content: &Content<'_, G>, bricks: &[VisibleBrick]) -> Result<u64, Error> {
-        self.draw_seen(content, bricks)
-    }
-
-    fn forget(&mut self) {
-        self.forget_seen();
-    }
-
-    fn survey(
-        &mut self,
-        content: &Content<'_, G>,
-        left: &mut [VisibleBrick],
-    ) -> Result<Option<u64>, Error> {
-        self.look_at(content, left)
-    }
-
-    fn finish(&mut self, _content: &Content<'_, G>) -> Result<Picture, Error> {
-        self.picture()
-    }
-}
-
-impl<G: Glyph> CpuRenderer<Glyphs<G>> {
-    /// A renderer of these glyphs.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use glam::DVec3;
-    /// use puncta_avc::{Cuboid, Glyphs};
-    /// use puncta_core::{Pipeline, Scene, View};
-    /// use puncta_cpu::{CpuRenderer, Shading, shade_glyphs};
-    /// use puncta_grid::{Grid, GridConfig};
-    ///
-    /// let mut scene = Scene::new(vec![Cuboid::new([0.0; 3], [2.0, 1.0, 1.0])]);
-    /// let grid = Grid::sort_scene(&mut scene, &GridConfig::default())?;
-    /// let view = View::look_at(DVec3::Z * 9.0, DVec3::ZERO, DVec3::Y)?
-    ///     .with_size(7, 5)?
-    ///     .with_orthographic(2.0)?;
-    /// let mut pipeline = Pipeline::new((), CpuRenderer::of(Glyphs::<Cuboid>::new([])));
-    /// let picture = pipeline.render(&scene, &grid, &view)?;
-    /// // All that looks at the camera lies at one depth.
-    /// assert_eq!(picture.covered_pixels(), 5 * 3);
-    /// assert!(picture.depth.iter().all(|&depth| depth == 8.5 || depth == f32::INFINITY));
-    ///
-    /// let glyphs = pipeline.renderer().glyphs();
-    /// let image = shade_glyphs(glyphs, &scene, &grid, &view, &picture, &Shading::default())?;
-    /// assert_eq!(image.pixels.len(), 7 * 5);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
-    pub fn of(glyphs: Glyphs<G>) -> Self {
-        Self::with(glyphs)
-    }
-
-    /// What is drawn.
-    #[must_use]
-    pub const fn glyphs(&self) -> &Glyphs<G> {
-        &self.shape
-    }
-
-    /// What is drawn, to change how.
-    ///
-    /// What was drawn since [`Renderer::begin`] stays as it was, so a change spoils that picture; the
-    /// next one is not concerned.
-    #[must_use]
-    pub const fn glyphs_mut(&mut self) -> &mut Glyphs<G> {
-        &mut self.shape
-    }
-}
-
 impl<S> CpuRenderer<S> {
-    fn with(shape: S) -> Self {
+    pub(crate) fn with(shape: S) -> Self {
         Self {
             shape,
             frame: None,
@@ -192,7 +72,7 @@ impl<S> CpuRenderer<S> {
     }
 
     /// Starts a new picture.
-    fn start(&mut self, view: &View) {
+    pub(crate) fn start(&mut self, view: &View) {
         self.knowledge.clear();
         self.outlook.clear();
         match &mut self.frame {
@@ -209,7 +89,7 @@ impl<S> CpuRenderer<S> {
     }
 
     /// Draws bricks, and leaves out what is found hidden on the way.
-    fn draw_bricks<R: Record>(
+    pub(crate) fn draw_bricks<R: Record>(
         &mut self,
         content: &Content<'_, R>,
         bricks: &[VisibleBrick],
@@ -235,7 +115,7 @@ impl<S> CpuRenderer<S> {
     }
 
     /// Draws the records that were seen in the picture before.
-    fn draw_seen<R: Record>(
+    pub(crate) fn draw_seen<R: Record>(
         &mut self,
         content: &Content<'_, R>,
         bricks: &[VisibleBrick],
@@ -257,13 +137,13 @@ impl<S> CpuRenderer<S> {
         Ok(runs.iter().map(|(_, ids)| ids.len() as u64).sum())
     }
 
-    fn forget_seen(&mut self) {
+    pub(crate) fn forget_seen(&mut self) {
         self.last.clear();
         self.has_drawn = false;
     }
 
     /// Finds what the bricks that are left may still change.
-    fn look_at<R: Record>(
+    pub(crate) fn look_at<R: Record>(
         &mut self,
         content: &Content<'_, R>,
         left: &mut [VisibleBrick],
@@ -279,7 +159,7 @@ impl<S> CpuRenderer<S> {
         Ok(Some(self.outlook.count(drawing)))
     }
 
-    fn picture(&self) -> Result<Picture, Error> {
+    pub(crate) fn picture(&self) -> Result<Picture, Error> {
         let drawing = self.frame.as_ref().ok_or(puncta_core::Error::NotBegun)?;
         let mut picture = Picture::new(drawing.view.width(), drawing.view.height())?;
         let (width, stride) = (picture.width as usize, drawing.stride);
@@ -293,7 +173,7 @@ impl<S> CpuRenderer<S> {
         Ok(picture)
     }
 
-    /// Whether the bricks that were left when [`Renderer::survey`] was last asked may still change a
+    /// Whether the bricks that were left when [`puncta_core::Renderer::survey`] was last asked may still change a
     /// pixel. Before that, all pixels are open.
     ///
     /// Those drawn since count as left.

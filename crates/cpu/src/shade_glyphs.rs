@@ -4,7 +4,7 @@ Shading of glyphs: from ids to an image.
 A headlight alone shows the faces of a block alike that are seen at one angle. So half of the light that
 has a direction comes from [`SUN`], which stands still in the world: `(1 + n.s) / 2` of it reaches a
 surface with the normal `n`, also one that looks away from it. The directions to the faces of a box lie
-so that any two that can be seen at once differ by a seventh of that light or more.
+so that any two that can be seen at once differ by a fifth of that light or more.
 
 Each record that is seen becomes geometry again, once for each band of rows, and its facets are drawn
 over the pixels that show it.
@@ -16,12 +16,12 @@ use crate::{
     levels::Levels,
 };
 use glam::DVec3;
-use puncta_avc::{Facet, Glyph, Glyphs, Lens, Surface};
+use puncta_avc::{Cloud, Facet, Glyph, Glyphs, Lens, Surface};
 use puncta_core::{Bricks, Camera, Image, NO_RECORD, Picture, Scene, View};
 use rayon::prelude::*;
 
 /// The direction to the sun in the world, not of length 1: mostly above, which is along z.
-const SUN: DVec3 = DVec3::new(0.2, -0.5, 0.84);
+const SUN: DVec3 = DVec3::new(0.0, -1.0, 2.0);
 
 /// How much of the light that has a direction comes from the sun.
 const SUN_SHARE: f64 = 0.5;
@@ -69,7 +69,20 @@ pub fn shade_glyphs<G: Glyph, B: Bricks + ?Sized>(
     let light =
         Light { camera: &camera, sun: camera.turn(SUN.normalize()), ambient: shading.ambient };
     let levels = Levels::new(&camera, bricks.bricks());
-    let (width, cloud) = (picture.width as usize, glyphs.cloud(&scene.records));
+    let shares = shares(&glyphs.cloud(&scene.records), (&lens, light), &levels, picture);
+    let width = picture.width as usize;
+    let share = |column, row, _| shares[row * width + column];
+    image(scene, (view, factor), picture, shading, share)
+}
+
+/// The share of light at each pixel of a picture that shows something.
+fn shares<G: Glyph>(
+    cloud: &Cloud<'_, G>,
+    (lens, light): (&Lens<'_>, Light<'_>),
+    levels: &Levels<'_>,
+    picture: &Picture,
+) -> Vec<f32> {
+    let width = picture.width as usize;
     let mut shares = vec![0.0; picture.id.len()];
     let bands = shares.par_chunks_mut(width * ROWS).zip(picture.id.par_chunks(width * ROWS));
     bands.enumerate().for_each(|(band, (shares, ids))| {
@@ -78,12 +91,11 @@ pub fn shade_glyphs<G: Glyph, B: Bricks + ?Sized>(
         let mut surface = Surface::default();
         for pixels in pixels_by_id(ids).chunk_by(|a, b| a.0 == b.0) {
             let id = pixels[0].0;
-            surface.fill(&lens, &cloud, id as usize, levels.nearest(id));
-            band.shade(&surface, pixels, &lens);
+            surface.fill(lens, cloud, id as usize, levels.nearest(id));
+            band.shade(&surface, pixels, lens);
         }
     });
-    let share = |column, row, _| shares[row * width + column];
-    image(scene, (view, factor), picture, shading, share)
+    shares
 }
 
 /// The pixels that show a record, by its id: ids and indices.
@@ -166,10 +178,11 @@ impl Band<'_> {
     /// Finds how much light reaches a facet where it is the nearest one at a pixel of its record.
     fn shade_facet(&mut self, facet: &Facet, id: u32, [columns, rows]: [[i64; 2]; 2]) {
         let [width, height] = self.light.camera.size();
-        let [top, bottom] = facet.rows(height);
+        let spans = facet.spans([width, height]);
+        let [top, bottom] = spans.rows();
         let normal = facet.normal();
         for row in top.max(rows[0])..=bottom.min(rows[1]) {
-            let [first, last] = facet.span(row as f64, width);
+            let [first, last] = spans.of(row as f64);
             let depths = facet.depth_of_row(row as f64);
             for column in first.max(columns[0])..=last.min(columns[1]) {
                 let pixel = self.pixel(column, row);
@@ -205,5 +218,88 @@ impl Band<'_> {
         let found = places.into_iter().find_map(meeting);
         let unknown = self.light.ambient + (1.0 - self.light.ambient) * ANY;
         found.map_or(unknown, |found| self.light.mix(found.normal, found.facing))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Coloring, CpuRenderer};
+    use proptest::prelude::*;
+    use puncta_avc::Cuboid;
+    use puncta_core::Pipeline;
+    use puncta_grid::{Grid, GridConfig};
+
+    fn view(eye: DVec3, is_perspective: bool) -> View {
+        let view = View::look_at(eye, DVec3::splat(0.01), DVec3::Z).unwrap();
+        let view = view.with_size(61, 47).unwrap();
+        if is_perspective { view } else { view.with_orthographic(3.0).unwrap() }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(60))]
+
+        /// Light is that of what each ray meets, also if a picture shows what no ray meets.
+        #[test]
+        fn shares_are_those_of_meetings(
+            eye in [-3.0..3.0, -3.0..3.0, 0.1..3.0_f64],
+            is_perspective in any::<bool>(),
+            cuboids in prop::collection::vec(
+                ([-1.0_f32..1.0, -1.0_f32..1.0, -1.0_f32..1.0], [0.01_f32..1.0, 0.01_f32..1.0, 0.01_f32..1.0]),
+                1..40,
+            ),
+            shift in 0_usize..70,
+        ) {
+            let records: Vec<Cuboid> =
+                cuboids.iter().map(|&(center, extent)| Cuboid::new(center, extent)).collect();
+            let mut scene = Scene::new(records);
+            let grid = Grid::sort_scene(&mut scene, &GridConfig::longest_side(3)).unwrap();
+            let view = view(DVec3::from(eye), is_perspective);
+            let glyphs = Glyphs::<Cuboid>::new([]);
+            let mut pipeline = Pipeline::new((), CpuRenderer::of(glyphs.clone()));
+            let mut picture = pipeline.render(&scene, &grid, &view).unwrap();
+            picture.id.rotate_right(shift);
+            let camera = Camera::new(&view, scene.origin);
+            let lens = Lens::new(&camera, glyphs.tolerance);
+            let light = Light { camera: &camera, sun: camera.turn(SUN.normalize()), ambient: 0.1 };
+            let levels = Levels::new(&camera, grid.bricks());
+            let cloud = glyphs.cloud(&scene.records);
+            let found = shares(&cloud, (&lens, light), &levels, &picture);
+            let mut surface = Surface::default();
+            for (pixel, &id) in picture.id.iter().enumerate() {
+                if id == NO_RECORD {
+                    continue;
+                }
+                let (column, row) = ((pixel % 61) as f64, (pixel / 61) as f64);
+                surface.fill(&lens, &cloud, id as usize, levels.nearest(id));
+                prop_assert!((0.1..=1.0).contains(&found[pixel]));
+                match surface.meet(&lens, column, row) {
+                    Some(met) => prop_assert_eq!(found[pixel], light.mix(met.normal, met.facing)),
+                    None => prop_assert!(shift > 0),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_faces_of_a_box_differ_from_all_corners() {
+        let mut scene = Scene::new(vec![Cuboid::new([0.0; 3], [1.0; 3])]);
+        let grid = Grid::sort_scene(&mut scene, &GridConfig::default()).unwrap();
+        let glyphs = Glyphs::<Cuboid>::new([]);
+        for corner in 0..8 {
+            let side = |axis: u32| if corner >> axis & 1 == 1 { 3.0 } else { -3.0 };
+            let view = view(DVec3::new(side(0), side(1), side(2)), false);
+            let mut pipeline = Pipeline::new((), CpuRenderer::of(glyphs.clone()));
+            let picture = pipeline.render(&scene, &grid, &view).unwrap();
+            let coloring = Coloring::Uniform([255; 3]);
+            let shading = Shading { coloring, ..Shading::default() };
+            let image = shade_glyphs(&glyphs, &scene, &grid, &view, &picture, &shading).unwrap();
+            let seen = image.pixels.iter().zip(&picture.id).filter(|(_, id)| **id == 0);
+            let mut reds: Vec<u8> = seen.map(|(pixel, _)| pixel[0]).collect();
+            reds.sort_unstable();
+            reds.dedup();
+            assert_eq!(reds.len(), 3, "{reds:?}");
+            assert!(reds.windows(2).all(|pair| pair[1] - pair[0] >= 10), "{reds:?}");
+        }
     }
 }

@@ -14,7 +14,10 @@ use crate::{
 };
 use glam::{DVec2, DVec3};
 use puncta_avc::{Cloud, DepthRow, Facet, Glyph, Glyphs, Lens};
-use puncta_core::Camera;
+use puncta_core::{Camera, depth_below};
+
+/// The largest side, in pixels, of a facet that is not looked at by tiles before it is drawn.
+const LARGE: i64 = 16;
 
 /// By how much balls are grown: far more than the rounding of what they hold.
 const BALL_SLACK: f64 = 1e-5;
@@ -108,14 +111,8 @@ impl Band<'_> {
         let is_known = a.is_finite() && b.is_finite() && c.is_finite();
         let (first, last) = (self.first_row as f64, self.last_row() as f64);
         let width = f64::from(self.camera.size()[0]);
-        // The first and last pixels with centres in the box of the corners.
-        let (start, end) = (low.ceil(), high.floor());
-        let is_beside = start.x > end.x
-            || start.y > end.y
-            || end.x < 0.0
-            || start.x >= width
-            || end.y < first
-            || start.y > last
+        let is_beside = !holds_whole(low.x.max(0.0), high.x.min(width - 1.0))
+            || !holds_whole(low.y.max(first), high.y.min(last))
             // As a facet has it, where rows run downwards.
             || (b - a).perp_dot(c - a) >= 0.0;
         !(is_known && is_beside)
@@ -123,16 +120,32 @@ impl Band<'_> {
 
     /// Draws a facet of a record.
     fn draw_facet(&mut self, facet: &Facet, id: u32) {
-        let [width, height] = self.camera.size();
-        let [first, last] = facet.rows(height);
-        for row in first.max(self.first_row)..=last.min(self.last_row()) {
-            let [first, last] = facet.span(row as f64, width);
-            if first <= last
-                && self.draw_span(&facet.depth_of_row(row as f64), (row, [first, last]), id)
+        let spans = facet.spans(self.camera.size());
+        let [first, last] = spans.rows();
+        let rows = [first.max(self.first_row), last.min(self.last_row())];
+        let columns = spans.columns();
+        if self.is_facet_hidden(facet, columns, rows) {
+            return;
+        }
+        for row in rows[0]..=rows[1] {
+            let span = spans.of(row as f64);
+            if span[0] <= span[1]
+                && self.draw_span(&facet.depth_of_row(row as f64), (row, span), id)
             {
-                self.touch([first, last], row);
+                self.touch(span, row);
             }
         }
+    }
+
+    /// Whether a facet covers nothing of this band, or a large one lies behind what is there.
+    #[inline]
+    fn is_facet_hidden(&mut self, facet: &Facet, columns: [i64; 2], rows: [i64; 2]) -> bool {
+        let sides = [columns[1] - columns[0], rows[1] - rows[0]];
+        if sides[0] < 0 || sides[1] < 0 {
+            return true;
+        }
+        (sides[0] > LARGE || sides[1] > LARGE)
+            && self.hides(columns, rows, depth_below(facet.depths()[0]))
     }
 
     /// Draws the pixels of a row from the first to the last; whether any depth changed.
@@ -143,37 +156,34 @@ impl Band<'_> {
         (row, [first, last]): (i64, [i64; 2]),
         id: u32,
     ) -> bool {
-        let (mut has_changed, mut column) = (false, first);
-        while column + LANES as i64 <= last + 1 {
-            has_changed |= self.draw_lanes(depths, (row, column), id);
-            column += LANES as i64;
-        }
-        for column in column..=last {
-            let depth = rounded(depths.at(column as f64));
-            let pixel = self.pixel(row, column);
-            if depth < self.depth[pixel] {
-                self.depth[pixel] = depth;
-                self.id[pixel] = id;
-                has_changed = true;
-            } else if depth == self.depth[pixel] && depth.is_finite() {
-                self.break_tie((row, column), id);
-            }
+        let mut has_changed = false;
+        for column in (first..=last).step_by(LANES) {
+            has_changed |= self.draw_lanes(depths, (row, column), (last + 1 - column, id));
         }
         has_changed
     }
 
-    /// Draws eight pixels; whether any depth changed.
+    /// Draws up to eight pixels; whether any depth changed.
     #[inline]
-    fn draw_lanes(&mut self, depths: &DepthRow, (row, column): (i64, i64), id: u32) -> bool {
+    fn draw_lanes(
+        &mut self,
+        depths: &DepthRow,
+        (row, column): (i64, i64),
+        (count, id): (i64, u32),
+    ) -> bool {
         let Some(Target { depth: old, id: ids, .. }) = self.target(row, column, id) else {
             return false;
         };
         let from = column as f64;
-        let new: [f32; LANES] = std::array::from_fn(|lane| rounded(depths.at(from + lane as f64)));
+        let at = |lane: usize| rounded(depths.at(from + lane as f64));
+        let new: [f32; LANES] =
+            std::array::from_fn(
+                |lane| if (lane as i64) < count { at(lane) } else { f32::INFINITY },
+            );
         let (mut has_changed, mut is_tie) = (false, false);
         for lane in 0..LANES {
             let is_nearer = new[lane] < old[lane];
-            is_tie |= new[lane] == old[lane];
+            is_tie |= (new[lane] == old[lane]) & (ids[lane] != id) & (new[lane] < f32::INFINITY);
             has_changed |= is_nearer;
             old[lane] = if is_nearer { new[lane] } else { old[lane] };
             ids[lane] = if is_nearer { id } else { ids[lane] };
@@ -189,6 +199,15 @@ impl Band<'_> {
         }
         has_changed
     }
+}
+
+/// Whether there is a whole number between two that are not negative.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "casts saturate")]
+fn holds_whole(low: f64, high: f64) -> bool {
+    // Cutting off digits is rounding down.
+    let last = (high as i64) as f64;
+    last >= low && high >= low
 }
 
 /// A depth as pictures have it.
