@@ -44,7 +44,7 @@ pub(crate) struct File {
     /// What follows the last dot of its name, in lower case.
     pub(crate) kind: String,
     pub(crate) bytes: u64,
-    /// 0 unless they were asked for.
+    /// Ends of lines; 0 unless they were asked for, and if it is no text.
     pub(crate) lines: u64,
     /// How long ago it was changed, in seconds.
     pub(crate) age: f64,
@@ -183,7 +183,7 @@ impl Walk<'_> {
     }
 }
 
-/// The number of ends of lines in a file.
+/// The number of ends of lines in a file; 0 if it holds a zero, which no text does.
 fn lines(path: &Path) -> std::io::Result<u64> {
     let mut file = fs::File::open(path)?;
     let (mut buffer, mut lines) = (vec![0; 1 << 16], 0);
@@ -191,6 +191,9 @@ fn lines(path: &Path) -> std::io::Result<u64> {
         let read = file.read(&mut buffer)?;
         if read == 0 {
             return Ok(lines);
+        }
+        if buffer[..read].contains(&0) {
+            return Ok(0);
         }
         lines += buffer[..read].iter().filter(|byte| **byte == b'\n').count() as u64;
     }
