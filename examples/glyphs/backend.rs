@@ -3,9 +3,7 @@
 use super::options::BackendKind;
 use anyhow::{Result, bail};
 use puncta::{
-    Amount, Content, Glyph, Glyphs, Picture, Renderer, View,
-    avc::{Lens, Surface},
-    core::{Camera, VisibleBrick},
+    Amount, Content, CpuRenderer, Glyph, Glyphs, Picture, Renderer, View, core::VisibleBrick,
 };
 
 /// A renderer of either kind.
@@ -19,10 +17,10 @@ impl<G: Glyph + 'static> Backend<G> {
     /// The renderer that was asked for.
     pub(crate) fn new(kind: BackendKind, glyphs: &Glyphs<G>) -> Result<Self> {
         match kind {
-            BackendKind::Cpu => Ok(Self {
-                renderer: Box::new(Naive { glyphs: glyphs.clone(), view: None, picture: None }),
-                name: "CPU".to_owned(),
-            }),
+            BackendKind::Cpu => {
+                let renderer = Box::new(AnyError(CpuRenderer::of(glyphs.clone())));
+                Ok(Self { renderer, name: "CPU".to_owned() })
+            }
             BackendKind::Gpu => bail!("glyphs are drawn on the CPU only"),
         }
     }
@@ -52,57 +50,34 @@ impl<G: Glyph> Renderer<G> for Backend<G> {
     }
 }
 
-struct Naive<G: Glyph> {
-    glyphs: Glyphs<G>,
-    view: Option<View>,
-    picture: Option<Picture>,
-}
+/// A renderer whose errors are those of a tool.
+struct AnyError<D>(D);
 
-impl<G: Glyph> Renderer<G> for Naive<G> {
+impl<G, D> Renderer<G> for AnyError<D>
+where
+    G: Glyph,
+    D: Renderer<G>,
+    anyhow::Error: From<D::Error>,
+{
     type Error = anyhow::Error;
 
     fn begin(&mut self, view: &View) -> Result<()> {
-        self.view = Some(view.clone());
-        self.picture = Some(Picture::new(view.width(), view.height())?);
-        Ok(())
+        Ok(self.0.begin(view)?)
     }
 
-    #[allow(clippy::all, clippy::cast_possible_truncation, reason = "x")]
     fn draw(&mut self, content: &Content<'_, G>, bricks: &[VisibleBrick]) -> Result<Amount> {
-        let view = self.view.as_ref().unwrap();
-        let picture = self.picture.as_mut().unwrap();
-        let camera = Camera::new(view, content.scene.origin);
-        let lens = Lens::new(&camera, self.glyphs.tolerance);
-        let cloud = self.glyphs.cloud(&content.scene.records);
-        let mut surface = Surface::default();
-        for brick in bricks {
-            let records = content.bricks[brick.index() as usize].records.clone();
-            for index in records {
-                surface.fill(&lens, &cloud, index as usize, brick.near());
-                for facet in surface.facets() {
-                    let [a, b] = facet.rows(view.height());
-                    for row in a..=b {
-                        let [first, last] = facet.span(row as f64, view.width());
-                        let depths = facet.depth_of_row(row as f64);
-                        for column in first..=last {
-                            let depth = depths.at(column as f64) as f32;
-                            let at = row as usize * view.width() as usize + column as usize;
-                            if depth < picture.depth[at]
-                                || (depth == picture.depth[at]
-                                    && content.scene.id(index) < content.scene.id(picture.id[at]))
-                            {
-                                picture.depth[at] = depth;
-                                picture.id[at] = index;
-                            }
-                        }
-                    }
-                }
-            }
-        }
-        Ok(Amount::of(content.bricks, bricks))
+        Ok(self.0.draw(content, bricks)?)
     }
 
-    fn finish(&mut self, _: &Content<'_, G>) -> Result<Picture> {
-        Ok(self.picture.clone().unwrap())
+    fn survey(
+        &mut self,
+        content: &Content<'_, G>,
+        left: &mut [VisibleBrick],
+    ) -> Result<Option<u64>> {
+        Ok(self.0.survey(content, left)?)
+    }
+
+    fn finish(&mut self, content: &Content<'_, G>) -> Result<Picture> {
+        Ok(self.0.finish(content)?)
     }
 }

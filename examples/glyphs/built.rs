@@ -3,7 +3,7 @@
 use super::options::Drawing;
 use anyhow::{Context, Result};
 use glam::DVec3;
-use puncta::{Background, Bounds, Glyph, Glyphs, Scene, View};
+use puncta::{Background, Bounds, Coloring, Glyph, Glyphs, Scene, View, cpu::Each};
 use std::fmt;
 
 /// A scene of glyphs that can be drawn.
@@ -17,6 +17,16 @@ pub(crate) struct Built<G: Glyph, B> {
     pub(crate) notes: Vec<String>,
     /// What it is made of, in words.
     pub(crate) facts: Vec<String>,
+}
+
+impl<G: Glyph, B> Built<G, B> {
+    /// Where the colors come from.
+    pub(crate) fn coloring(&self) -> Coloring<'_> {
+        match &self.paint {
+            Paint::Scene => Coloring::Colors,
+            Paint::Each(each) => Coloring::Each(Each::new(each.as_ref())),
+        }
+    }
 }
 
 /// Where the colors of records come from.

@@ -7,7 +7,7 @@ there the surface itself is never in the way.
 */
 
 use super::{
-    built::{Built, Paint},
+    built::Built,
     drawing::Drawing,
     normals,
     progress::Bar,
@@ -15,7 +15,7 @@ use super::{
 };
 use anyhow::Result;
 use glam::{DVec3, Vec3};
-use puncta::{Background, Bricks, Coloring, Glyph, Image, NO_RECORD, Picture, View};
+use puncta::{Background, Bricks, Glyph, Image, NO_RECORD, Picture, View};
 use rayon::prelude::*;
 
 /// What a pixel shows, and the light on it.
@@ -43,16 +43,8 @@ pub(crate) fn image<G: Glyph + 'static, B: Bricks>(
         fall(beam, (view, picture), (&from, &seen), &mut spots);
     }
     bar.finish();
-    let colors = match &built.paint {
-        Paint::Scene => Some(Coloring::Colors.colors(&built.scene)?),
-        Paint::Each(_) => None,
-    };
-    let paint = &built.paint;
-    let color = |id: u32| match (paint, &colors) {
-        (Paint::Each(each), _) => each(id),
-        (Paint::Scene, Some(colors)) => colors.of(id),
-        (Paint::Scene, None) => [128; 3],
-    };
+    let colors = built.coloring().colors(&built.scene)?;
+    let color = |id: u32| colors.of(id);
     Ok(average(picture, &spots, (supersample, background), color))
 }
 

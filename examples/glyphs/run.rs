@@ -2,7 +2,7 @@
 
 use super::{built::Built, drawing::Drawing, light, options::Drawing as Options};
 use anyhow::{Context, Result, ensure};
-use puncta::{Bricks, Glyph, core::NO_RECORD, io::png};
+use puncta::{Bricks, Glyph, Shading, io::png, shade_glyphs};
 use std::{
     io::Write,
     path::PathBuf,
@@ -59,14 +59,21 @@ where
     let (picture, drawn) = drawing.picture(&fine)?;
     watch.lap("draw");
     let background = options.background.unwrap_or(built.outlook.background);
-    let how = (options.sky, options.supersample, background);
-    let image = light::image(&mut drawing, &built, (&fine, &picture), how)?;
+    let supersample = options.supersample;
+    let image = if options.sky > 0 {
+        let how = (options.sky, supersample, background);
+        light::image(&mut drawing, &built, (&fine, &picture), how)?
+    } else {
+        let coloring = built.coloring();
+        let shading = Shading { coloring, background, supersample, ..Shading::default() };
+        shade_glyphs(&built.glyphs, &built.scene, &built.bricks, &view, &picture, &shading)?
+    };
     watch.lap("light");
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
     png::write(&out, &image)?;
     watch.lap("write");
     let visible = picture.visible_records().len();
-    let covered = picture.id.iter().filter(|id| **id != NO_RECORD).count();
+    let covered = picture.covered_pixels();
     let place = out.canonicalize().unwrap_or(out);
     let facts: String = built.facts.iter().map(|fact| format!("{fact}\n")).collect();
     // Nobody may be listening any more; the file is written all the same.
