@@ -4,14 +4,13 @@ use super::options::Drawing;
 use anyhow::{Context, Result};
 use glam::DVec3;
 use puncta::{Background, Bounds, Coloring, Glyph, Glyphs, Scene, View, cpu::Each};
-use std::fmt;
 
 /// A scene of glyphs that can be drawn.
 pub(crate) struct Built<G: Glyph, B> {
     pub(crate) scene: Scene<G>,
     pub(crate) bricks: B,
     pub(crate) glyphs: Glyphs<G>,
-    pub(crate) paint: Paint,
+    pub(crate) paint: Paint<G>,
     pub(crate) outlook: Outlook,
     /// What the user should know, such as what was left out.
     pub(crate) notes: Vec<String>,
@@ -20,32 +19,28 @@ pub(crate) struct Built<G: Glyph, B> {
 }
 
 impl<G: Glyph, B> Built<G, B> {
-    /// Where the colors come from.
-    pub(crate) fn coloring(&self) -> Coloring<'_> {
-        match &self.paint {
-            Paint::Scene => Coloring::Colors,
-            Paint::Each(each) => Coloring::Each(Each::new(each.as_ref())),
+    /// Does something with the colors of the records.
+    pub(crate) fn with_coloring<T>(&self, act: impl FnOnce(Coloring<'_>) -> T) -> T {
+        let records = self.scene.records.as_slice();
+        match self.paint {
+            Paint::Scene => act(Coloring::Colors),
+            Paint::Record(color) => {
+                let each = |index: u32| records.get(index as usize).map_or([128; 3], color);
+                act(Coloring::Each(Each::new(&each)))
+            }
         }
     }
 }
 
 /// Where the colors of records come from.
-pub(crate) enum Paint {
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Paint<G> {
     /// The colors of the scene.
     #[allow(dead_code, reason = "a tool has one of the two")]
     Scene,
-    /// A function of the index in the scene.
+    /// What a record says itself.
     #[allow(dead_code, reason = "a tool has one of the two")]
-    Each(Box<dyn Fn(u32) -> [u8; 3] + Sync>),
-}
-
-impl fmt::Debug for Paint {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Scene => "Scene",
-            Self::Each(_) => "Each",
-        })
-    }
+    Record(fn(&G) -> [u8; 3]),
 }
 
 /// A view and a light that suit a scene. z is up.

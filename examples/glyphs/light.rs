@@ -43,9 +43,10 @@ pub(crate) fn image<G: Glyph + 'static, B: Bricks>(
         fall(beam, (view, picture), (&from, &seen), &mut spots);
     }
     bar.finish();
-    let colors = built.coloring().colors(&built.scene)?;
-    let color = |id: u32| colors.of(id);
-    Ok(average(picture, &spots, (supersample, background), color))
+    built.with_coloring(|coloring| {
+        let colors = coloring.colors(&built.scene)?;
+        Ok(average(picture, &spots, (supersample, background), |id| colors.of(id)))
+    })
 }
 
 /// Normals, and the light that comes from everywhere.

@@ -64,9 +64,11 @@ where
         let how = (options.sky, supersample, background);
         light::image(&mut drawing, &built, (&fine, &picture), how)?
     } else {
-        let coloring = built.coloring();
-        let shading = Shading { coloring, background, supersample, ..Shading::default() };
-        shade_glyphs(&built.glyphs, &built.scene, &built.bricks, &view, &picture, &shading)?
+        let Built { glyphs, scene, bricks, .. } = &built;
+        built.with_coloring(|coloring| {
+            let shading = Shading { coloring, background, supersample, ..Shading::default() };
+            shade_glyphs(glyphs, scene, bricks, &view, &picture, &shading)
+        })?
     };
     watch.lap("light");
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));

@@ -35,6 +35,19 @@ pub(crate) enum Height {
     Depth,
     /// The time since the last change
     Age,
+    /// Ends of lines
+    Lines,
+}
+
+impl Height {
+    /// What makes a file high, if not its place.
+    fn of(self, file: &File) -> f64 {
+        match self {
+            Self::Depth => 0.0,
+            Self::Age => file.age,
+            Self::Lines => file.lines as f64,
+        }
+    }
 }
 
 /// What gives sectors their color.
@@ -64,8 +77,8 @@ pub(crate) fn build(
     color: ColorBy,
 ) -> Vec<Sector> {
     let levels = depth(root);
-    let oldest = root.all_files().into_iter().map(|file| file.age).fold(0.0, f64::max);
-    let mut plan = Plan { rings: rings(levels), kinds, height, color, oldest, sectors: vec![] };
+    let most = root.all_files().into_iter().map(|file| height.of(file)).fold(0.0, f64::max);
+    let mut plan = Plan { rings: rings(levels), kinds, height, color, most, sectors: vec![] };
     let grey = [236, 236, 232];
     plan.put([0.0, 1.0], 0, plan.top(0), grey);
     plan.below(root, [0.0, 1.0], 1, None);
@@ -109,7 +122,8 @@ struct Plan<'a> {
     kinds: &'a Kinds,
     height: Height,
     color: ColorBy,
-    oldest: f64,
+    /// The most that makes a file high.
+    most: f64,
     sectors: Vec<Sector>,
 }
 
@@ -134,10 +148,13 @@ impl Plan<'_> {
                         (ColorBy::Kind, _) => self.kinds.color(&file.kind),
                         (ColorBy::Folder, hue) => tint(hue, level, index),
                     };
-                    let age = if self.oldest > 0.0 { file.age / self.oldest } else { 0.0 };
                     let height = match self.height {
                         Height::Depth => self.top(level),
-                        Height::Age => LOWEST + age.sqrt() * (HIGHEST - LOWEST),
+                        _ if self.most > 0.0 => {
+                            let share = (self.height.of(file) / self.most).sqrt();
+                            LOWEST + share * (HIGHEST - LOWEST)
+                        }
+                        _ => LOWEST,
                     };
                     self.put(turns, level, height, color);
                 }
@@ -150,7 +167,7 @@ impl Plan<'_> {
                     };
                     let height = match self.height {
                         Height::Depth => self.top(level),
-                        Height::Age => LOWEST,
+                        _ => LOWEST,
                     };
                     self.put(turns, level, height, color);
                     self.below(folder, turns, level + 1, Some(hue));
