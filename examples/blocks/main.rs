@@ -68,11 +68,10 @@ fn cells(text: &str) -> Result<[u16; 3], String> {
 fn build(options: &Options) -> Result<Built<Block, Grid>> {
     let dims = options.cells;
     let start = Instant::now();
-    let world = fill(options)?;
-    let (terrain, world) = world;
+    let (terrain, world) = fill(options)?;
     let filled = start.elapsed();
     let spinner = Bar::spinner("looking");
-    let kind = |cell| terrain.kind(cell) as u8;
+    let kind = |[x, y, z]: [u16; 3]| terrain.column([x, y]).kind(z) as u8;
     let count = world.count();
     ensure!(
         !options.all_blocks || count <= MAX_RECORDS as u64,
@@ -103,9 +102,9 @@ fn build(options: &Options) -> Result<Built<Block, Grid>> {
     let outlook = Outlook {
         bounds: Bounds {
             min: DVec3::ZERO,
-            max: DVec3::new(f64::from(x), f64::from(y), top * 0.62),
+            max: DVec3::new(f64::from(x), f64::from(y), top * 0.52),
         },
-        toward: DVec3::new(-0.72, -1.0, 0.62),
+        toward: DVec3::new(-0.66, -1.0, 0.72),
         fov: 30.0,
         zoom: 1.0,
         sun: DVec3::new(0.62, -1.0, 0.95),
@@ -123,8 +122,9 @@ fn fill(options: &Options) -> Result<(Terrain, BlockWorld)> {
     let mut world = BlockWorld::new(dims.map(u32::from)).context("--cells")?;
     let (bar, done) = (Bar::counting("filling", x * y), AtomicU64::new(0));
     world.fill_columns(|[x, y], cells| {
+        let column = terrain.column([x, y]);
         for (z, cell) in (0..).zip(cells) {
-            *cell = Filling::solid(terrain.kind([x, y, z]) as u8);
+            *cell = if column.is_filled(z) { Filling::Opaque } else { Filling::Air };
         }
         bar.set(done.fetch_add(1, Ordering::Relaxed));
     });

@@ -8,14 +8,14 @@ use super::{
     kind::Kind,
     noise::{chance, noise, sum},
 };
-use glam::{IVec3, Vec3};
+use glam::{IVec2, IVec3, Vec3};
 use rayon::prelude::*;
 
 /// How far apart trees stand, at least on average.
 const TREES_APART: i32 = 9;
 
 /// The part of the world's height that lies below the lowest and the highest ground.
-const GROUND: [f32; 2] = [0.36, 0.86];
+const GROUND: [f32; 2] = [0.17, 0.60];
 
 /// A landscape in a box of cells.
 #[derive(Debug)]
@@ -55,24 +55,20 @@ impl Terrain {
         (low + (top - low) * share).clamp(1.0, f32::from(self.dims[2])) as u16
     }
 
-    fn height(&self, x: i32, y: i32) -> Option<i32> {
+    fn height(&self, IVec2 { x, y }: IVec2) -> Option<i32> {
         let [width, length, _] = self.dims.map(i32::from);
         let is_in = (0..width).contains(&x) && (0..length).contains(&y);
         let index = is_in.then(|| usize::try_from(y * width + x).ok())??;
         self.heights.get(index).map(|&height| i32::from(height))
     }
 
-    /// What a cell is made of.
-    pub(crate) fn kind(&self, cell: [u16; 3]) -> Kind {
-        let place = IVec3::from(cell.map(i32::from));
-        let height = self.height(place.x, place.y).unwrap_or(0);
-        if place.z >= height {
-            self.plant(place)
-        } else if self.is_cave(place, height) {
-            Kind::Air
-        } else {
-            self.ground(place, height)
-        }
+    /// A column of cells, and the trees that may reach into it.
+    pub(crate) fn column(&self, [x, y]: [u16; 2]) -> Column<'_> {
+        let at = IVec2::new(x.into(), y.into());
+        let net = at.div_euclid(IVec2::splat(TREES_APART));
+        let squares = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| net + IVec2::new(dx, dy)));
+        let trees = squares.filter_map(|square| self.tree(square, at)).collect();
+        Column { terrain: self, at, height: self.height(at).unwrap_or(0), trees }
     }
 
     /// Tunnels are where two noises are both near zero, halls where a third one is high.
@@ -92,7 +88,7 @@ impl Terrain {
     fn ground(&self, place: IVec3, height: i32) -> Kind {
         let (p, below) = (place.as_vec3(), height - 1 - place.z);
         let flat = Vec3::new(p.x, p.y, 0.0);
-        let (high, rough) = self.climate(place.x, place.y, height);
+        let (high, rough) = self.climate(place.truncate(), height);
         let soil = 3 + (2.0 * noise(flat / 17.0, self.seed ^ 31)).round() as i32;
         let is_dry = sum(flat / 150.0, 2, 0.5, self.seed ^ 32) > 0.12;
         if below < soil {
@@ -110,17 +106,17 @@ impl Terrain {
         }
         let deep = 1.0 - p.z / height.max(1) as f32;
         let ore = |size: f32, limit: f32, seed: u32| noise(p / size, self.seed ^ seed) > limit;
-        if deep > 0.72 && ore(6.0, 0.62, 41) {
+        if deep > 0.72 && ore(8.0, 0.60, 41) {
             Kind::Gem
-        } else if deep > 0.5 && ore(7.0, 0.6, 42) {
+        } else if deep > 0.5 && ore(9.0, 0.59, 42) {
             Kind::Gold
-        } else if ore(8.0, 0.58, 43) {
+        } else if ore(10.0, 0.58, 43) {
             Kind::Iron
-        } else if ore(9.0, 0.57, 44) {
+        } else if ore(11.0, 0.56, 44) {
             Kind::Coal
         } else if deep + 0.06 * noise(p / 20.0, self.seed ^ 45) > 0.6 {
             Kind::Slate
-        } else if noise(p / Vec3::new(60.0, 60.0, 7.0), self.seed ^ 46) > 0.42 {
+        } else if noise(p / Vec3::new(60.0, 60.0, 7.0), self.seed ^ 46) > 0.5 {
             Kind::Dirt
         } else {
             Kind::Stone
@@ -128,60 +124,97 @@ impl Terrain {
     }
 
     /// How high the ground lies, as a share of all heights there are, and how steep it is.
-    fn climate(&self, x: i32, y: i32, height: i32) -> (f32, i32) {
-        let around = [[1, 0], [-1, 0], [0, 1], [0, -1]];
-        let other = |[dx, dy]: [i32; 2]| self.height(x + dx, y + dy).unwrap_or(height);
+    fn climate(&self, at: IVec2, height: i32) -> (f32, i32) {
+        let around = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
+        let other = |way: IVec2| self.height(at + way).unwrap_or(height);
         let rough = around.map(|way| (other(way) - height).abs()).into_iter().max().unwrap_or(0);
         let high = f32::from(self.dims[2].min(self.dims[0].max(self.dims[1])));
         let [low, top] = GROUND.map(|part| part * high);
-        let flat = Vec3::new(x as f32, y as f32, 0.0);
+        let flat = at.as_vec2().extend(0.0);
         let blur = 0.05 * noise(flat / 11.0, self.seed ^ 51);
         ((height as f32 - low) / (top - low) + blur, rough)
     }
 
-    /// Trees: one in each square of a net may stand there.
-    fn plant(&self, place: IVec3) -> Kind {
-        let net = [place.x, place.y].map(|x| x.div_euclid(TREES_APART));
-        let squares = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [net[0] + dx, net[1] + dy]));
-        for [x, y] in squares {
-            let found = self.tree(IVec3::new(x, y, 0), place);
-            if found != Kind::Air {
-                return found;
-            }
-        }
-        Kind::Air
-    }
-
-    /// What the tree of a square has in a cell.
-    fn tree(&self, square: IVec3, place: IVec3) -> Kind {
-        let roll = |seed: u32| chance(square, self.seed ^ seed);
+    /// The tree of a square of the net, if there is one and it reaches into a column.
+    fn tree(&self, square: IVec2, column: IVec2) -> Option<Tree> {
+        let roll = |seed: u32| chance(square.extend(0), self.seed ^ seed);
         #[expect(clippy::cast_possible_truncation, reason = "it is below the side of a square")]
-        let at = |square: i32, seed| square * TREES_APART + (roll(seed) * TREES_APART as f32) as i32;
-        let (x, y) = (at(square.x, 61), at(square.y, 62));
-        let offset = IVec3::new(place.x - x, place.y - y, 0);
-        if offset.abs().max_element() > 4 {
-            return Kind::Air;
+        let within = |seed: u32| (roll(seed) * TREES_APART as f32) as i32;
+        let at = square * TREES_APART + IVec2::new(within(61), within(62));
+        if (column - at).abs().max_element() > 4 {
+            return None;
         }
-        let Some(height) = self.height(x, y) else { return Kind::Air };
-        let flat = Vec3::new(x as f32, y as f32, 0.0);
-        let wood = 0.35 + 0.9 * sum(flat / 70.0, 2, 0.5, self.seed ^ 63);
-        let root = IVec3::new(x, y, height - 1);
-        if roll(64) > wood || self.ground(root, height) != Kind::Grass || self.is_cave(root, height) {
-            return Kind::Air;
-        }
+        let height = self.height(at)?;
+        let wood = 0.35 + 0.9 * sum(at.as_vec2().extend(0.0) / 70.0, 2, 0.5, self.seed ^ 63);
+        let root = at.extend(height - 1);
+        let is_meadow = || self.ground(root, height) == Kind::Grass && !self.is_cave(root, height);
+        #[expect(clippy::cast_possible_truncation, reason = "it is below 4")]
         let trunk = 4 + (roll(65) * 4.0) as i32;
-        let up = place.z - height;
-        if offset == IVec3::ZERO && (0..trunk).contains(&up) {
+        let leaf = if roll(68) > 0.88 { Kind::Blossom } else { Kind::Leaf };
+        let foot = at.extend(height);
+        let tree = Tree { foot, trunk, radius: 2.3 + 1.2 * roll(66), leaf };
+        (roll(64) <= wood && is_meadow()).then_some(tree)
+    }
+}
+
+/// A tree.
+#[derive(Clone, Copy, Debug)]
+struct Tree {
+    /// The lowest cell of the trunk.
+    foot: IVec3,
+    trunk: i32,
+    /// Of the crown.
+    radius: f32,
+    leaf: Kind,
+}
+
+impl Tree {
+    fn kind(&self, place: IVec3, seed: u32) -> Kind {
+        let offset = place - self.foot;
+        if offset.truncate() == IVec2::ZERO && (0..self.trunk).contains(&offset.z) {
             return Kind::Wood;
         }
-        let radius = 2.3 + 1.2 * roll(66);
-        let crown = Vec3::new(offset.x as f32, offset.y as f32, (up - trunk) as f32 * 0.9);
-        let ragged = 0.5 * chance(place, self.seed ^ 67);
-        if up >= 2 && crown.length() < radius - ragged {
-            if roll(68) > 0.88 { Kind::Blossom } else { Kind::Leaf }
+        let crown = (offset - IVec3::new(0, 0, self.trunk)).as_vec3() * Vec3::new(1.0, 1.0, 0.9);
+        let is_leaf = offset.z >= 2 && crown.length() < self.radius - 0.5 * chance(place, seed ^ 67);
+        if is_leaf { self.leaf } else { Kind::Air }
+    }
+}
+
+/// A column of cells.
+#[derive(Debug)]
+pub(crate) struct Column<'a> {
+    terrain: &'a Terrain,
+    at: IVec2,
+    height: i32,
+    trees: Vec<Tree>,
+}
+
+impl Column<'_> {
+    /// Whether there is a block at a height.
+    pub(crate) fn is_filled(&self, z: u16) -> bool {
+        let place = self.at.extend(z.into());
+        if place.z < self.height {
+            !self.terrain.is_cave(place, self.height)
         } else {
-            Kind::Air
+            self.plant(place) != Kind::Air
         }
+    }
+
+    /// What the block at a height is made of.
+    pub(crate) fn kind(&self, z: u16) -> Kind {
+        let place = self.at.extend(z.into());
+        if place.z >= self.height {
+            self.plant(place)
+        } else if self.terrain.is_cave(place, self.height) {
+            Kind::Air
+        } else {
+            self.terrain.ground(place, self.height)
+        }
+    }
+
+    fn plant(&self, place: IVec3) -> Kind {
+        let kinds = self.trees.iter().map(|tree| tree.kind(place, self.terrain.seed));
+        kinds.fold(Kind::Air, |found, kind| if found == Kind::Air { kind } else { found })
     }
 }
 
