@@ -1,22 +1,7 @@
 //! Kinds of files and their colors.
 
-use super::tree::Folder;
+use super::{glyphs::palette::PALETTE, tree::Folder};
 use std::collections::HashMap;
-
-/// Colors that are easily told apart.
-pub(crate) const PALETTE: [[u8; 3]; 11] = [
-    [57, 105, 172],
-    [242, 183, 1],
-    [231, 63, 116],
-    [17, 165, 121],
-    [230, 131, 16],
-    [127, 60, 141],
-    [128, 186, 90],
-    [0, 134, 149],
-    [249, 123, 114],
-    [75, 75, 143],
-    [207, 28, 144],
-];
 
 /// What all other kinds have.
 const OTHER: [u8; 3] = [165, 170, 153];

@@ -15,7 +15,7 @@ use super::{
 };
 use anyhow::Result;
 use glam::{DVec3, Vec3};
-use puncta::{Background, Bricks, Glyph, Image, NO_RECORD, Picture, View};
+use puncta::{Background, Bounds, Bricks, Glyph, Image, NO_RECORD, Picture, View};
 use rayon::prelude::*;
 
 /// What a pixel shows, and the light on it.
@@ -33,7 +33,7 @@ pub(crate) fn image<G: Glyph + 'static, B: Bricks>(
     (count, supersample, background): (u16, u32, Background),
 ) -> Result<Image> {
     let mut spots = spots(view, picture);
-    let bounds = built.scene.bounds();
+    let bounds = bounds(built);
     let beams = sky::beams(count, built.outlook.sun);
     let bar = Bar::counting("lighting", beams.len() as u64);
     for (done, beam) in (0_u64..).zip(&beams) {
@@ -47,6 +47,17 @@ pub(crate) fn image<G: Glyph + 'static, B: Bricks>(
         let colors = coloring.colors(&built.scene)?;
         Ok(average(picture, &spots, (supersample, background), |id| colors.of(id)))
     })
+}
+
+/// The box around all bricks.
+fn bounds<G: Glyph, B: Bricks>(built: &Built<G, B>) -> Bounds {
+    let mut all = Bounds::EMPTY;
+    for brick in built.bricks.bricks() {
+        let Bounds { min, max } = brick.world_bounds(built.scene.origin);
+        all.add(min);
+        all.add(max);
+    }
+    all
 }
 
 /// Normals, and the light that comes from everywhere.

@@ -1,5 +1,21 @@
 //! Colors.
 
+/// Colors that are easily told apart.
+#[allow(dead_code, reason = "not every tool needs so many")]
+pub(crate) const PALETTE: [[u8; 3]; 11] = [
+    [57, 105, 172],
+    [242, 183, 1],
+    [231, 63, 116],
+    [17, 165, 121],
+    [230, 131, 16],
+    [127, 60, 141],
+    [128, 186, 90],
+    [0, 134, 149],
+    [249, 123, 114],
+    [75, 75, 143],
+    [207, 28, 144],
+];
+
 /// A color between two others.
 #[allow(dead_code, reason = "not every tool mixes colors")]
 pub(crate) fn mix(from: [u8; 3], to: [u8; 3], share: f64) -> [u8; 3] {

@@ -1,25 +1,16 @@
 /*!
 Rings of sectors: a ring for each depth, and in it a sector for each file and folder.
 
-A sector takes the share of its folder's turn that it has of the folder's bytes. Rings become narrower
-outwards, so that there is room for any depth.
+A sector takes the share of its folder's turn that it has of the folder's bytes.
 */
 
 use super::{
-    glyphs::palette::mix,
-    kinds::{Kinds, PALETTE},
+    glyphs::palette::{PALETTE, mix},
+    kinds::Kinds,
+    rings::{rings, shares},
     tree::{File, Folder},
 };
 use clap::ValueEnum;
-
-/// The radius of the whole.
-pub(crate) const RADIUS: f64 = 500.0;
-
-/// The radius of the disc in the middle, which is the folder itself.
-const MIDDLE: f64 = 90.0;
-
-/// How wide a ring is, by that within it.
-const NARROWING: f64 = 0.87;
 
 /// How high the middle is, and at least a sector.
 pub(crate) const HIGHEST: f64 = 150.0;
@@ -88,33 +79,6 @@ pub(crate) fn build(
 /// How many rings there are around the middle.
 fn depth(folder: &Folder) -> usize {
     1 + folder.folders.iter().map(depth).max().unwrap_or(0)
-}
-
-/// The inner and outer radius of the middle and of each ring around it.
-pub(crate) fn rings(levels: usize) -> Vec<[f64; 2]> {
-    let widths: Vec<f64> =
-        std::iter::successors(Some(1.0), |width| Some(width * NARROWING)).take(levels).collect();
-    let sum: f64 = widths.iter().sum();
-    let mut rings = vec![[0.0, MIDDLE]];
-    let mut inner = MIDDLE;
-    for width in widths {
-        let outer = inner + width / sum * (RADIUS - MIDDLE);
-        rings.push([inner, outer]);
-        inner = outer;
-    }
-    rings
-}
-
-/// Cuts a part of a turn into parts in proportion to bytes.
-pub(crate) fn shares([from, to]: [f64; 2], bytes: &[u64]) -> Vec<[f64; 2]> {
-    let all: u64 = bytes.iter().sum();
-    let mut before = 0;
-    let mut at = |bytes: u64| {
-        before += bytes;
-        from + (to - from) * (before as f64 / all.max(1) as f64)
-    };
-    let mut start = from;
-    bytes.iter().map(|&bytes| [std::mem::replace(&mut start, at(bytes)), start]).collect()
 }
 
 struct Plan<'a> {

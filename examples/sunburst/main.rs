@@ -9,6 +9,7 @@ mod glyphs;
 #[path = "../glyphs/kinds.rs"]
 mod kinds;
 mod layout;
+mod rings;
 #[path = "../glyphs/tree.rs"]
 mod tree;
 
@@ -17,8 +18,9 @@ use clap::Parser;
 use glam::DVec3;
 use glyphs::{Built, DrawingOptions, Outlook, Paint};
 use kinds::Kinds;
-use layout::{ColorBy, Height, RADIUS, Sector};
+use layout::{ColorBy, Height, Sector};
 use puncta::{Background, Bounds, Glyphs, Grid, GridConfig, Scene, avc::Arc};
+use rings::RADIUS;
 use std::process::ExitCode;
 use tree::{Tree, Where};
 

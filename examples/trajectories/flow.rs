@@ -84,20 +84,20 @@ impl Flow {
         };
         let starts: Vec<DVec3> = (0..count).map(|_| start()).collect();
         let bar = Bar::spinner("following");
-        let follow = |(id, start): (u64, DVec3)| {
+        let follow = |start: DVec3| {
             let next = |place: DVec3| {
                 (0..SUBSTEPS).fold(place, |place, _| self.advance(place, step / SUBSTEPS as f64))
             };
             let mut place = (0..before).fold(start, |place, _| next(place));
-            let mut path = Path::new(id);
-            for _ in 0..points {
+            let mut path = Path::default();
+            for index in 0..points {
                 path.points.push(place.as_vec3().to_array());
-                path.speeds.push(self.velocity(place).as_vec3().length());
+                path.times.push(step as f32 * index as f32);
                 place = next(place);
             }
             path
         };
-        let paths = (0..u64::from(count)).into_par_iter().zip(starts).map(follow).collect();
+        let paths = starts.into_par_iter().map(follow).collect();
         bar.finish();
         paths
     }

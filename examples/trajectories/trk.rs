@@ -69,18 +69,16 @@ impl<R: Read> Reader<R> {
                 }
                 break;
             };
-            let mut path = Path::new(found);
+            let mut path = Path::default();
             strange += self
                 .points(&mut path, count, header.scalars)
                 .and_then(|strange| self.skip(header.properties).map(|()| strange))
                 .with_context(|| format!("track {found} at byte {place}, of {count} points"))?;
             found += 1;
             told(self.at);
-            if path.points.is_empty() {
-                empty += 1;
-            } else {
-                paths.push(path);
-            }
+            empty += u64::from(path.points.is_empty());
+            // Also one without points, so that the others keep their numbers.
+            paths.push(path);
         }
         let more = std::io::copy(&mut self.input, &mut std::io::sink())?;
         let mut notes = Vec::new();
@@ -89,7 +87,7 @@ impl<R: Read> Reader<R> {
                 notes.push(format!("{count} {what}"));
             }
         };
-        note(empty, "tracks without points left out");
+        note(empty, "tracks have no points");
         note(strange, "points left out: a coordinate is not finite");
         note(more, "bytes after the last track left out");
         Ok(Tracks { paths, notes })
@@ -150,7 +148,8 @@ impl<R: Read> Reader<R> {
         let stride = (3 + scalars) * 4;
         // No more than what is there may ever be asked for.
         let mut buffer = vec![0; stride * PIECE];
-        let (mut left, mut strange) = (count, 0);
+        // There are no times in the file: a step is a unit of it.
+        let (mut left, mut strange, mut time) = (count, 0, 0.0);
         while left > 0 {
             let piece = usize::try_from(left).map_or(PIECE, |left| left.min(PIECE));
             let bytes = &mut buffer[..piece * stride];
@@ -164,8 +163,10 @@ impl<R: Read> Reader<R> {
                     if self.is_big { f32::from_be_bytes(bytes) } else { f32::from_le_bytes(bytes) }
                 };
                 let place = [real(0), real(1), real(2)];
+                time += 1.0;
                 if place.iter().all(|x| x.is_finite()) {
                     path.points.push(place);
+                    path.times.push(time);
                 } else {
                     strange += 1;
                 }
