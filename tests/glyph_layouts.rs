@@ -21,8 +21,12 @@ fn sizes() -> impl Strategy<Value = Vec<f64>> {
 
 fn rect() -> impl Strategy<Value = Rect> {
     let side = || 1e-3_f64..1e4;
-    (-1e4_f64..1e4, -1e4_f64..1e4, side(), side())
-        .prop_map(|(x, y, width, height)| Rect { x, y, width, height })
+    (-1e4_f64..1e4, -1e4_f64..1e4, side(), side()).prop_map(|(x, y, width, height)| Rect {
+        x,
+        y,
+        width,
+        height,
+    })
 }
 
 proptest! {

@@ -100,10 +100,12 @@ fn build(options: &Options) -> Result<Built<Block, Grid>> {
     ];
     let top = f64::from(z).min(f64::from(x.max(y)));
     let outlook = Outlook {
-        bounds: Bounds {
+        points: Bounds {
             min: DVec3::ZERO,
             max: DVec3::new(f64::from(x), f64::from(y), top * 0.52),
-        },
+        }
+        .corners()
+        .to_vec(),
         toward: DVec3::new(-0.66, -1.0, 0.72),
         fov: 30.0,
         zoom: 1.0,

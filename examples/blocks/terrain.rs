@@ -30,7 +30,8 @@ impl Terrain {
     pub(crate) fn new(dims: [u16; 3], seed: u32) -> Self {
         let [width, length, _] = dims.map(i32::from);
         let mut terrain = Self { dims, seed, heights: Vec::new() };
-        let columns = (0..length).into_par_iter().flat_map_iter(|y| (0..width).map(move |x| (x, y)));
+        let columns =
+            (0..length).into_par_iter().flat_map_iter(|y| (0..width).map(move |x| (x, y)));
         terrain.heights = columns.map(|(x, y)| terrain.raise(x, y)).collect();
         terrain
     }
@@ -77,7 +78,8 @@ impl Terrain {
             return false;
         }
         let p = place.as_vec3() * Vec3::new(1.0, 1.0, 1.35);
-        let is_thin = |seed: u32, size: f32, width: f32| noise(p / size, self.seed ^ seed).abs() < width;
+        let is_thin =
+            |seed: u32, size: f32, width: f32| noise(p / size, self.seed ^ seed).abs() < width;
         // Only few tunnels come up to the surface.
         let deep = ((height - place.z) as f32 / 14.0).min(1.0);
         let width = 0.05 + 0.06 * deep;
@@ -175,7 +177,8 @@ impl Tree {
             return Kind::Wood;
         }
         let crown = (offset - IVec3::new(0, 0, self.trunk)).as_vec3() * Vec3::new(1.0, 1.0, 0.9);
-        let is_leaf = offset.z >= 2 && crown.length() < self.radius - 0.5 * chance(place, seed ^ 67);
+        let is_leaf =
+            offset.z >= 2 && crown.length() < self.radius - 0.5 * chance(place, seed ^ 67);
         if is_leaf { self.leaf } else { Kind::Air }
     }
 }

@@ -60,10 +60,12 @@ fn build(options: &Options) -> Result<Built<Cuboid, Grid>> {
     let bricks = Grid::sort_scene(&mut scene, &GridConfig::default())?;
     let [width, length] = layout::SIDES;
     let outlook = Outlook {
-        bounds: Bounds {
+        points: Bounds {
             min: DVec3::new(-width * 0.5, -length * 0.5, 0.0),
             max: DVec3::new(width * 0.5, length * 0.5, 60.0),
-        },
+        }
+        .corners()
+        .to_vec(),
         toward: DVec3::new(-0.62, -1.0, 0.86),
         fov: 30.0,
         zoom: 1.0,

@@ -44,15 +44,15 @@ pub(crate) enum Paint<G> {
 }
 
 /// A view and a light that suit a scene. z is up.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Outlook {
-    /// The box to look at, in world coordinates.
-    pub(crate) bounds: Bounds,
+    /// What should be seen: points in world coordinates.
+    pub(crate) points: Vec<DVec3>,
     /// From the middle towards the camera.
     pub(crate) toward: DVec3,
     /// In degrees.
     pub(crate) fov: f64,
-    /// How many times nearer the camera is than one that sees the whole box.
+    /// How many times nearer the camera is than one that sees all points.
     pub(crate) zoom: f64,
     /// Where the sun stands.
     pub(crate) sun: DVec3,
@@ -61,6 +61,13 @@ pub(crate) struct Outlook {
 }
 
 impl Outlook {
+    /// The box around what should be seen.
+    pub(crate) fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        self.points.iter().for_each(|&point| bounds.add(point));
+        bounds
+    }
+
     /// The view that the options ask for; where they say nothing, one that suits.
     pub(crate) fn view(&self, options: &Drawing) -> Result<View> {
         let fov = options.fov.unwrap_or(self.fov);
@@ -68,8 +75,10 @@ impl Outlook {
         let set = |view: View| -> Result<View> {
             Ok(view.with_size(width, height)?.with_perspective(fov.to_radians())?)
         };
-        let target = options.target.unwrap_or_else(|| self.bounds.center());
-        let reach = self.bounds.extent().length().max(f64::MIN_POSITIVE);
+        let bounds = self.bounds();
+        let middle = bounds.center();
+        let target = options.target.unwrap_or(middle);
+        let reach = bounds.extent().length().max(f64::MIN_POSITIVE);
         let eye = options.eye.unwrap_or(target + self.toward.normalize_or(DVec3::Z) * reach);
         let sight = target - eye;
         let is_along_z = sight.truncate().length() <= 1e-6 * sight.length();
@@ -78,8 +87,7 @@ impl Outlook {
         if options.eye.is_some() {
             return Ok(view);
         }
-        let fitted = view.fitted(&self.bounds);
-        let middle = self.bounds.center();
+        let fitted = view.framing(self.points.iter().map(|&point| (point, 0.0)));
         let distance = (fitted.eye() - middle).dot(-fitted.forward()).max(0.0);
         let nearer = fitted.eye() + fitted.forward() * (distance * (1.0 - 1.0 / self.zoom));
         let eye = if options.target.is_some() { nearer + target - middle } else { nearer };

@@ -123,7 +123,8 @@ impl Reader<'_> {
     fn polygon(&mut self, rings: &[Vec<Position>], properties: Option<&JsonObject>) {
         let mut kept: Vec<Vec<[f64; 2]>> = Vec::new();
         for (index, ring) in rings.iter().enumerate() {
-            let points: Option<Vec<[f64; 2]>> = ring.iter().map(|position| degrees(position)).collect();
+            let points: Option<Vec<[f64; 2]>> =
+                ring.iter().map(|position| degrees(position.as_slice())).collect();
             let Some(mut points) = points else {
                 return self.count("polygons left out: a position is no longitude and latitude");
             };
@@ -133,7 +134,9 @@ impl Reader<'_> {
             }
             match (points.len() >= 3, index) {
                 (true, _) => kept.push(points),
-                (false, 0) => return self.count("polygons left out: they have less than 3 corners"),
+                (false, 0) => {
+                    return self.count("polygons left out: they have less than 3 corners");
+                }
                 (false, _) => self.count("holes left out: they have less than 3 corners"),
             }
         }
@@ -182,8 +185,10 @@ fn find(properties: Option<&JsonObject>, names: &[(&str, f64)]) -> Option<f64> {
 /// The middle of the box around all shapes.
 fn middle(shapes: &[Shape]) -> [f64; 2] {
     [0, 1].map(|axis| {
-        let all = || shapes.iter().flat_map(|shape| &shape.rings).flatten().map(|point| point[axis]);
-        let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+        let all =
+            || shapes.iter().flat_map(|shape| &shape.rings).flatten().map(|point| point[axis]);
+        let (low, high) =
+            (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
         low + (high - low) * 0.5
     })
 }

@@ -118,7 +118,12 @@ fn town_plan(options: &Options) -> Plan {
     let facts =
         vec![format!("a town: {} houses, {} towers", count(Sort::House), count(Sort::Tower))];
     let outlook = Outlook {
-        bounds: Bounds { min: DVec3::new(-700.0, -620.0, 0.0), max: DVec3::new(760.0, 840.0, 60.0) },
+        points: Bounds {
+            min: DVec3::new(-700.0, -620.0, 0.0),
+            max: DVec3::new(760.0, 840.0, 60.0),
+        }
+        .corners()
+        .to_vec(),
         toward: DVec3::new(0.35, -1.0, 0.62),
         fov: 32.0,
         zoom: 1.1,
@@ -137,7 +142,8 @@ fn file_plan(options: &Options, file: &std::path::Path) -> Result<Plan> {
     let width = (high - low).max_element();
     ensure!(width > 0.0, "{}: all of it lies in one place", file.display());
     let top = footprints.iter().map(|footprint| footprint.heights[1]).fold(0.0, f64::max);
-    let stretch = options.stretch.unwrap_or(if top < 0.02 * width { width / 8.0 / top } else { 1.0 });
+    let stretch =
+        options.stretch.unwrap_or(if top < 0.02 * width { width / 8.0 / top } else { 1.0 });
     ensure!(stretch > 0.0 && stretch.is_finite(), "--stretch {stretch}: it must be positive");
     let colors: Vec<[u8; 3]> =
         footprints.iter().map(|footprint| map.color((footprint.heights[1] / top).sqrt())).collect();
@@ -157,10 +163,14 @@ fn file_plan(options: &Options, file: &std::path::Path) -> Result<Plan> {
             middle[0],
             middle[1]
         ),
-        format!("{width:.1} m wide, the highest is {top:.1} m; heights are drawn {stretch:.3} times"),
+        format!(
+            "{width:.1} m wide, the highest is {top:.1} m; heights are drawn {stretch:.3} times"
+        ),
     ];
     let outlook = Outlook {
-        bounds: Bounds { min: low.extend(0.0), max: high.extend(top * stretch * 0.5) },
+        points: Bounds { min: low.extend(0.0), max: high.extend(top * stretch * 0.5) }
+            .corners()
+            .to_vec(),
         toward: DVec3::new(0.3, -1.0, 0.85),
         fov: 32.0,
         zoom: 1.0,

@@ -137,7 +137,8 @@ impl Town {
         for way in [1.0, -1.0] {
             self.put(vec![along(way)], [-12.0, 0.0], Sort::Ground);
         }
-        let water: Vec<[f64; 2]> = bank(-1.0).chain(bank(1.0).collect::<Vec<_>>().into_iter().rev()).collect();
+        let water: Vec<[f64; 2]> =
+            bank(-1.0).chain(bank(1.0).collect::<Vec<_>>().into_iter().rev()).collect();
         self.put(vec![water], [-12.0, -5.0], Sort::Water);
     }
 
@@ -146,7 +147,8 @@ impl Town {
         let margin = |k: f64| if k.rem_euclid(4.0) == 0.0 { AVENUE } else { STREET } * 0.5;
         let [width, length] = BLOCK;
         let min = DVec2::new(u * width + margin(u), v * length + margin(v));
-        let max = DVec2::new((u + 1.0) * width - margin(u + 1.0), (v + 1.0) * length - margin(v + 1.0));
+        let max =
+            DVec2::new((u + 1.0) * width - margin(u + 1.0), (v + 1.0) * length - margin(v + 1.0));
         let lot = Lot { min, max };
         let at = outline(&lot.corners());
         let off = at.iter().map(|p| (p[1] - river(p[0])).abs()).fold(f64::INFINITY, f64::min);
@@ -206,7 +208,11 @@ impl Town {
             // A corner that is higher than the rest.
             let [part, _] = lot.cut(0, deep / lot.size().x);
             let [part, _] = part.cut(1, deep / lot.size().y);
-            self.put(vec![outline(&part.inset(1.5).chamfered(3.0))], [height, height + 7.0], Sort::House);
+            self.put(
+                vec![outline(&part.inset(1.5).chamfered(3.0))],
+                [height, height + 7.0],
+                Sort::House,
+            );
         }
     }
 
@@ -247,7 +253,11 @@ impl Town {
                 let height = self.roll(4.5, 9.0);
                 let gap = self.roll(1.2, 2.4);
                 if house.size().x > 2.0 * gap + 3.0 {
-                    self.put(vec![outline(&house.inset(gap).corners())], [0.6, height], Sort::House);
+                    self.put(
+                        vec![outline(&house.inset(gap).corners())],
+                        [0.6, height],
+                        Sort::House,
+                    );
                 }
                 rest = after;
             }
@@ -271,7 +281,8 @@ impl Town {
                 1 => {
                     let round: Vec<[f64; 2]> = (0..24)
                         .map(|i| {
-                            let angle = DVec2::from_angle(f64::from(i) / 24.0 * std::f64::consts::TAU);
+                            let angle =
+                                DVec2::from_angle(f64::from(i) / 24.0 * std::f64::consts::TAU);
                             bend(middle + angle * (size.min_element() * 0.5)).to_array()
                         })
                         .collect();

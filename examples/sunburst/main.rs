@@ -87,10 +87,12 @@ fn build(options: &Options) -> Result<Built<Arc, Grid>> {
     let bricks = Grid::sort_scene(&mut scene, &GridConfig::default())?;
     let reach = RADIUS * 0.98;
     let outlook = Outlook {
-        bounds: Bounds {
+        points: Bounds {
             min: DVec3::new(-reach, -reach, 0.0),
             max: DVec3::new(reach, reach, layout::HIGHEST * 0.5),
-        },
+        }
+        .corners()
+        .to_vec(),
         toward: DVec3::new(0.0, -1.0, 1.25),
         fov: 28.0,
         zoom: 1.12,

@@ -59,7 +59,8 @@ pub(crate) struct Look {
 /// Nearly the range of speeds.
 #[expect(clippy::cast_possible_truncation, reason = "they were f32")]
 pub(crate) fn speeds(nodes: &[Node]) -> [f32; 2] {
-    inner_range(|| nodes.iter().map(|node| f64::from(node.speed())), 0.005).map(|speed| speed as f32)
+    inner_range(|| nodes.iter().map(|node| f64::from(node.speed())), 0.005)
+        .map(|speed| speed as f32)
 }
 
 impl Look {
@@ -106,7 +107,11 @@ impl Look {
                 ColorBy::Speed => map.color(0.5),
                 ColorBy::Direction => paths[id].direction(index).map_or([128; 3], |direction| {
                     direction.to_array().map(|x| {
-                        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+                        #[expect(
+                            clippy::cast_possible_truncation,
+                            clippy::cast_sign_loss,
+                            reason = "0 to 255"
+                        )]
                         let byte = (40.0 + 215.0 * x.abs().min(1.0)) as u8;
                         byte
                     })
@@ -114,9 +119,10 @@ impl Look {
                 ColorBy::Id => PALETTE[id % PALETTE.len()],
             }
         };
-        let places = paths.iter().enumerate().flat_map(|(id, path)| {
-            (0..path.points.len()).map(move |index| (id, index))
-        });
+        let places = paths
+            .iter()
+            .enumerate()
+            .flat_map(|(id, path)| (0..path.points.len()).map(move |index| (id, index)));
         let painted = places.zip(nodes).map(|((id, index), node)| {
             let own = color(id, index, node);
             let [r, g, b] = match self.selected {

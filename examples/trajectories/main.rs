@@ -113,7 +113,7 @@ fn build(options: &Options) -> Result<Built<Node, Runs>> {
             notes.push(format!("{count} {what}"));
         }
     }
-    let outlook = outlook(options, bounds);
+    let outlook = outlook(options, &paths);
     let view = outlook.view(&options.drawing)?;
     let speeds = look::speeds(&all.nodes);
     let color = options.color.unwrap_or(match options.file {
@@ -149,14 +149,17 @@ fn bounds(paths: &[Path]) -> Bounds {
     bounds
 }
 
-fn outlook(options: &Options, bounds: Bounds) -> Outlook {
+/// A view of all points, or of as many as say enough.
+fn outlook(options: &Options, paths: &[Path]) -> Outlook {
+    let all: usize = paths.iter().map(|path| path.points.len()).sum();
+    let points = paths.iter().flat_map(|path| &path.points).step_by(all.div_ceil(1 << 16).max(1));
     let toward = match (&options.file, options.flow) {
         (Some(_), _) => DVec3::new(1.0, -0.6, 0.45),
         (None, Flow::Lorenz) => DVec3::new(0.55, -1.0, 0.12),
         (None, Flow::Thomas | Flow::Abc) => DVec3::new(1.0, -0.7, 0.6),
     };
     Outlook {
-        bounds,
+        points: points.map(|point| DVec3::from(point.map(f64::from))).collect(),
         toward,
         fov: 30.0,
         zoom: 1.0,

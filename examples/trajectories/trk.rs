@@ -65,7 +65,9 @@ impl<R: Read> Reader<R> {
             let place = self.at;
             let Some(count) = self.count()? else {
                 if let Some(tracks) = header.tracks {
-                    bail!("byte 988: {tracks} tracks are promised, but the file ends after {found}");
+                    bail!(
+                        "byte 988: {tracks} tracks are promised, but the file ends after {found}"
+                    );
                 }
                 break;
             };
@@ -120,8 +122,7 @@ impl<R: Read> Reader<R> {
             usize::try_from(number).with_context(|| format!("byte {at}: {number} {what}"))
         };
         let count = self.integer(word(988));
-        let tracks =
-            u64::try_from(count).with_context(|| format!("byte 988: {count} tracks"))?;
+        let tracks = u64::try_from(count).with_context(|| format!("byte 988: {count} tracks"))?;
         Ok(Header {
             scalars: short(36, "scalars of a point")?,
             properties: short(238, "properties of a track")?,
@@ -137,7 +138,9 @@ impl<R: Read> Reader<R> {
             4 => {
                 let count = self.integer(bytes);
                 let points = u64::try_from(count);
-                Ok(Some(points.with_context(|| format!("byte {place}: a track of {count} points"))?))
+                Ok(Some(
+                    points.with_context(|| format!("byte {place}: a track of {count} points"))?,
+                ))
             }
             read => bail!("byte {place}: the file ends after {read} of 4 bytes of a track"),
         }
@@ -159,7 +162,8 @@ impl<R: Read> Reader<R> {
             }
             for point in buffer[..piece * stride].chunks_exact(stride) {
                 let real = |k: usize| {
-                    let bytes = [point[4 * k], point[4 * k + 1], point[4 * k + 2], point[4 * k + 3]];
+                    let bytes =
+                        [point[4 * k], point[4 * k + 1], point[4 * k + 2], point[4 * k + 3]];
                     if self.is_big { f32::from_be_bytes(bytes) } else { f32::from_le_bytes(bytes) }
                 };
                 let place = [real(0), real(1), real(2)];
