@@ -1,6 +1,6 @@
 //! What draws: the one place that knows of the CPU and of GPUs.
 
-use super::options::BackendKind;
+use super::options::{BackendKind, Drawing};
 use anyhow::{Result, bail};
 use puncta::{
     Amount, Content, CpuRenderer, Glyph, Glyphs, Picture, Renderer, View, core::VisibleBrick,
@@ -15,15 +15,31 @@ pub(crate) struct Backend<G: Glyph> {
 
 impl<G: Glyph + 'static> Backend<G> {
     /// The renderer that was asked for.
-    pub(crate) fn new(kind: BackendKind, glyphs: &Glyphs<G>) -> Result<Self> {
-        match kind {
+    pub(crate) fn new(options: &Drawing, glyphs: &Glyphs<G>) -> Result<Self> {
+        match options.backend {
+            BackendKind::Cpu if options.adapter.is_some() => bail!("--adapter is for --backend gpu"),
             BackendKind::Cpu => {
                 let renderer = Box::new(AnyError(CpuRenderer::of(glyphs.clone())));
                 Ok(Self { renderer, name: "CPU".to_owned() })
             }
-            BackendKind::Gpu => bail!("glyphs are drawn on the CPU only"),
+            BackendKind::Gpu => gpu(options, glyphs),
         }
     }
+}
+
+#[cfg(feature = "gpu")]
+fn gpu<G: Glyph + 'static>(options: &Drawing, glyphs: &Glyphs<G>) -> Result<Backend<G>> {
+    use anyhow::Context;
+    use puncta::{Gpu, GpuConfig, GpuRenderer, gpu::Extent};
+    let adapter = options.adapter.as_deref();
+    let gpu = Gpu::new(adapter, Extent::Full).context("--backend cpu needs no GPU")?;
+    let renderer = GpuRenderer::of(&gpu, glyphs.clone(), GpuConfig::default())?;
+    Ok(Backend { name: gpu.name().to_owned(), renderer: Box::new(AnyError(renderer)) })
+}
+
+#[cfg(not(feature = "gpu"))]
+fn gpu<G: Glyph + 'static>(_: &Drawing, _: &Glyphs<G>) -> Result<Backend<G>> {
+    bail!("this build draws on the CPU only; build it with the feature gpu")
 }
 
 impl<G: Glyph> Renderer<G> for Backend<G> {

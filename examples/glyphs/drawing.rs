@@ -17,7 +17,7 @@ pub(crate) struct Drawing<'a, G: Glyph, B> {
 
 impl<'a, G: Glyph + 'static, B: Bricks> Drawing<'a, G, B> {
     pub(crate) fn new(options: &Options, built: &'a Built<G, B>) -> Result<Self> {
-        let backend = Backend::new(options.backend, &built.glyphs)?;
+        let backend = Backend::new(options, &built.glyphs)?;
         let pipeline = Pipeline::new((FrustumCull, Depth::default()), backend);
         Ok(Self { built, pipeline })
     }

@@ -43,6 +43,10 @@ pub(crate) struct Drawing {
     #[arg(long, value_enum, default_value_t = BackendKind::Cpu)]
     pub(crate) backend: BackendKind,
 
+    /// A part of the name of the GPU to draw with; the fastest by default
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+
     /// Threads to draw with, at most 1024; all cores by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
