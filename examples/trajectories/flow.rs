@@ -3,7 +3,6 @@ Flows: particles that follow a field, each from a place of its own.
 
 * Lorenz: the two wings of the attractor of convection, 1963.
 * Thomas: cyclically symmetric, particles wander through a labyrinth.
-* ABC: the flow of Arnold, Beltrami and Childress, vortices that cross each other.
 */
 
 use super::{glyphs::progress::Bar, path::Path};
@@ -20,8 +19,6 @@ pub(crate) enum Flow {
     Lorenz,
     /// A labyrinth that looks the same along each axis
     Thomas,
-    /// Vortices that cross each other
-    Abc,
 }
 
 /// How to follow it.
@@ -42,16 +39,8 @@ impl Flow {
         match self {
             Self::Lorenz => DVec3::new(10.0 * (y - x), x * (28.0 - z) - y, x * y - 8.0 / 3.0 * z),
             Self::Thomas => {
-                const DAMPING: f64 = 0.19;
+                const DAMPING: f64 = 0.2;
                 DVec3::new(y.sin() - DAMPING * x, z.sin() - DAMPING * y, x.sin() - DAMPING * z)
-            }
-            Self::Abc => {
-                let [a, b, c] = [1.0, (2.0_f64 / 3.0).sqrt(), (1.0_f64 / 3.0).sqrt()];
-                DVec3::new(
-                    a * z.sin() + c * y.cos(),
-                    b * x.sin() + a * z.cos(),
-                    c * y.sin() + b * x.cos(),
-                )
             }
         }
     }
@@ -62,7 +51,6 @@ impl Flow {
                 Recipe { step: 0.008, start: (DVec3::new(0.0, 0.0, 25.0), 12.0), before: 150 }
             }
             Self::Thomas => Recipe { step: 0.12, start: (DVec3::ZERO, 3.0), before: 300 },
-            Self::Abc => Recipe { step: 0.06, start: (DVec3::ZERO, 3.1), before: 0 },
         }
     }
 

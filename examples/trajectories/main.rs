@@ -33,11 +33,11 @@ struct Options {
     file: Option<PathBuf>,
 
     /// The flow that particles follow
-    #[arg(long, value_enum, default_value_t = Flow::Lorenz)]
+    #[arg(long, value_enum, default_value_t = Flow::Thomas)]
     flow: Flow,
 
     /// How many particles there are
-    #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 80, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     count: u32,
 
     /// How many points each of them leaves behind
@@ -124,7 +124,7 @@ fn build(options: &Options) -> Result<Built<Node, Runs>> {
     #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
     let look = Look {
         draw: options.draw,
-        radius: options.radius.unwrap_or((reach * 0.0019) as f32),
+        radius: options.radius.unwrap_or((reach * 0.0022) as f32),
         width: options.width,
         selected: options.select,
         speeds,
@@ -156,7 +156,7 @@ fn outlook(options: &Options, paths: &[Path]) -> Outlook {
     let toward = match (&options.file, options.flow) {
         (Some(_), _) => DVec3::new(1.0, -0.6, 0.45),
         (None, Flow::Lorenz) => DVec3::new(0.55, -1.0, 0.12),
-        (None, Flow::Thomas | Flow::Abc) => DVec3::new(1.0, -0.7, 0.6),
+        (None, Flow::Thomas) => DVec3::new(1.0, -0.7, 0.6),
     };
     Outlook {
         points: points.map(|point| DVec3::from(point.map(f64::from))).collect(),
