@@ -6,6 +6,7 @@ pub(crate) enum Sort {
     Ground,
     Pavement,
     Park,
+    Tree,
     Water,
     House,
     Tower,

@@ -105,6 +105,7 @@ fn town_plan(options: &Options) -> Plan {
             Sort::Ground => [196, 194, 186],
             Sort::Pavement => [222, 219, 211],
             Sort::Park => [134, 170, 104],
+            Sort::Tree => mix([88, 132, 74], [124, 160, 84], (index % 7) as f64 / 6.0),
             Sort::Water => [104, 152, 188],
             Sort::House => {
                 let roofs = [[214, 146, 112], [226, 178, 134], [205, 128, 104], [232, 204, 168]];
@@ -116,7 +117,12 @@ fn town_plan(options: &Options) -> Plan {
     let colors = colors.collect();
     let count = |sort: Sort| footprints.iter().filter(|footprint| footprint.sort == sort).count();
     let facts =
-        vec![format!("a town: {} houses, {} towers", count(Sort::House), count(Sort::Tower))];
+        vec![format!(
+            "a town: {} houses, {} towers, {} trees",
+            count(Sort::House),
+            count(Sort::Tower),
+            count(Sort::Tree)
+        )];
     let outlook = Outlook {
         points: Bounds {
             min: DVec3::new(-700.0, -620.0, 0.0),
@@ -124,7 +130,7 @@ fn town_plan(options: &Options) -> Plan {
         }
         .corners()
         .to_vec(),
-        toward: DVec3::new(0.35, -1.0, 0.62),
+        toward: DVec3::new(0.42, -1.0, 0.55),
         fov: 32.0,
         zoom: 1.1,
         sun: DVec3::new(-0.9, -0.45, 0.85),

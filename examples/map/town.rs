@@ -160,13 +160,16 @@ impl Town {
         let middle = bend((min + max) * 0.5);
         let center = (-(middle - DVec2::new(120.0, 230.0)).length_squared() / 2.2e5).exp();
         let what = self.roll(0.0, 1.0);
+        if self.roll(0.0, 1.0) < 0.35 {
+            self.alley(Lot { min: min - 3.5, max: max + 3.5 });
+        }
         if what < 0.07 && center < 0.8 {
             self.park(lot);
         } else if what < 0.07 + 0.45 * center {
             self.towers(lot, center);
-        } else if what < 0.75 && center > 0.12 {
+        } else if what < 0.62 && center > 0.05 {
             self.court(lot, center);
-        } else if what < 0.88 {
+        } else if what < 0.80 - 0.2 * (1.0 - center) {
             self.corners(lot, center);
         } else {
             self.rows(lot);
@@ -188,6 +191,38 @@ impl Town {
         let hole: Vec<[f64; 2]> = pond.iter().map(|&p| bend(p).to_array()).collect();
         self.put(vec![outline(&lot.chamfered(8.0)), hole.clone()], [0.6, 1.8], Sort::Park);
         self.put(vec![hole], [0.6, 1.0], Sort::Water);
+        for _ in 0..26 {
+            let angle = DVec2::from_angle(self.roll(0.0, std::f64::consts::TAU));
+            let place = middle + angle * size * self.roll(0.34, 0.48);
+            if (place - middle).abs().cmplt(size * 0.47).all() {
+                self.tree(place, 1.8);
+            }
+        }
+    }
+
+    /// A crown of eight sides.
+    fn tree(&mut self, place: DVec2, ground: f64) {
+        let (radius, turn) = (self.roll(1.6, 3.2), self.roll(0.0, 1.0));
+        let corner = |i: u32| bend(place + DVec2::from_angle(f64::from(i) * 0.785 + turn) * radius);
+        let crown = (0..8).map(|i| corner(i).to_array()).collect();
+        let height = radius * self.roll(1.6, 2.6);
+        self.put(vec![crown], [ground + 0.8, ground + height], Sort::Tree);
+    }
+
+    /// Trees on the pavement around a block.
+    fn alley(&mut self, lot: Lot) {
+        let corners = lot.inset(1.2).corners();
+        for (i, &a) in corners.iter().enumerate() {
+            let b = corners[(i + 1) % 4];
+            let count = ((b - a).length() / 9.0).floor();
+            let mut k = 0.5;
+            while k < count {
+                if self.roll(0.0, 1.0) < 0.8 {
+                    self.tree(a.lerp(b, k / count), 0.6);
+                }
+                k += 1.0;
+            }
+        }
     }
 
     /// A closed row of houses around a courtyard.

@@ -71,7 +71,8 @@ pub(crate) fn build(
     let most = root.all_files().into_iter().map(|file| height.of(file)).fold(0.0, f64::max);
     let mut plan = Plan { rings: rings(levels), kinds, height, color, most, sectors: vec![] };
     let grey = [236, 236, 232];
-    plan.put([0.0, 1.0], 0, plan.top(0), grey);
+    let middle = if height == Height::Depth { plan.top(0) } else { 2.0 * LOWEST };
+    plan.put([0.0, 1.0], 0, middle, grey);
     plan.below(root, [0.0, 1.0], 1, None);
     plan.sectors
 }
