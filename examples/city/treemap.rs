@@ -35,21 +35,23 @@ impl Rect {
 pub(crate) fn squarify(sizes: &[f64], within: Rect) -> Vec<Rect> {
     let sizes: Vec<f64> =
         sizes.iter().map(|&size| if size.is_finite() { size.max(0.0) } else { 0.0 }).collect();
-    let mut left = sizes.iter().sum::<f64>();
+    // What is left of the sizes from each on. Summed from the end, where the small ones are: what is left
+    // after the large ones were taken away would be right to few digits.
+    let mut left = vec![0.0; sizes.len() + 1];
+    for index in (0..sizes.len()).rev() {
+        left[index] = left[index + 1] + sizes[index];
+    }
     let (mut rest, mut rects) = (within, Vec::with_capacity(sizes.len()));
     while rects.len() < sizes.len() {
-        let sizes = &sizes[rects.len()..];
-        if left <= 0.0 {
+        let first = rects.len();
+        let sizes = &sizes[first..];
+        if left[first] <= 0.0 {
             rects.extend(sizes.iter().map(|_| Rect { width: 0.0, height: 0.0, ..rest }));
             break;
         }
-        let scale = rest.width * rest.height / left;
+        let scale = rest.width * rest.height / left[first];
         let count = row(sizes, rest.shorter(), scale);
-        let sum = sizes[..count].iter().sum::<f64>();
-        // The last row takes what is left, whatever rounding did.
-        let share = if count == sizes.len() { 1.0 } else { (sum / left).min(1.0) };
-        rest = lay(&sizes[..count], sum, share, rest, &mut rects);
-        left -= sum;
+        rest = lay(&sizes[..count], left[first + count], rest, &mut rects);
     }
     rects
 }
@@ -73,23 +75,24 @@ fn row(sizes: &[f64], side: f64, scale: f64) -> usize {
     sizes.len()
 }
 
-/// Lays a row that takes a share of a rectangle, and returns the rest.
-fn lay(sizes: &[f64], sum: f64, share: f64, rest: Rect, rects: &mut Vec<Rect>) -> Rect {
+/// Lays a row into a rectangle, and returns what is left for the other sizes, of this sum.
+fn lay(sizes: &[f64], left: f64, rest: Rect, rects: &mut Vec<Rect>) -> Rect {
     let Rect { x, y, width, height } = rest;
-    let mut before = 0.0;
+    let (sum, mut before) = (sizes.iter().sum::<f64>(), 0.0);
+    let (share, after) = (sum / (sum + left), left / (sum + left));
     let is_column = width >= height;
     for &size in sizes {
-        let (from, to) = if sum > 0.0 { (before / sum, (before + size) / sum) } else { (0.0, 0.0) };
+        let (from, part) = if sum > 0.0 { (before / sum, size / sum) } else { (0.0, 0.0) };
         before += size;
         rects.push(if is_column {
-            Rect { x, y: y + height * from, width: width * share, height: height * (to - from) }
+            Rect { x, y: y + height * from, width: width * share, height: height * part }
         } else {
-            Rect { x: x + width * from, y, width: width * (to - from), height: height * share }
+            Rect { x: x + width * from, y, width: width * part, height: height * share }
         });
     }
     if is_column {
-        Rect { x: x + width * share, width: width * (1.0 - share), ..rest }
+        Rect { x: x + width * share, width: width * after, ..rest }
     } else {
-        Rect { y: y + height * share, height: height * (1.0 - share), ..rest }
+        Rect { y: y + height * share, height: height * after, ..rest }
     }
 }

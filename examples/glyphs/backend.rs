@@ -17,7 +17,9 @@ impl<G: Glyph + 'static> Backend<G> {
     /// The renderer that was asked for.
     pub(crate) fn new(options: &Drawing, glyphs: &Glyphs<G>) -> Result<Self> {
         match options.backend {
-            BackendKind::Cpu if options.adapter.is_some() => bail!("--adapter is for --backend gpu"),
+            BackendKind::Cpu if options.adapter.is_some() => {
+                bail!("--adapter is for --backend gpu")
+            }
             BackendKind::Cpu => {
                 let renderer = Box::new(AnyError(CpuRenderer::of(glyphs.clone())));
                 Ok(Self { renderer, name: "CPU".to_owned() })

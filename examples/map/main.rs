@@ -116,13 +116,12 @@ fn town_plan(options: &Options) -> Plan {
     });
     let colors = colors.collect();
     let count = |sort: Sort| footprints.iter().filter(|footprint| footprint.sort == sort).count();
-    let facts =
-        vec![format!(
-            "a town: {} houses, {} towers, {} trees",
-            count(Sort::House),
-            count(Sort::Tower),
-            count(Sort::Tree)
-        )];
+    let facts = vec![format!(
+        "a town: {} houses, {} towers, {} trees",
+        count(Sort::House),
+        count(Sort::Tower),
+        count(Sort::Tree)
+    )];
     let outlook = Outlook {
         points: Bounds {
             min: DVec3::new(-700.0, -620.0, 0.0),
