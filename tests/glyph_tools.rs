@@ -64,9 +64,10 @@ impl Tools {
 
     /// A folder with some files.
     fn fill(&self, folder: &str) {
-        for (name, bytes) in [("a.rs", 9000), ("b.rs", 300), ("c", 50), ("in/d.txt", 4000)] {
-            self.write(&format!("{folder}/{name}"), "a line\n".repeat(bytes / 7));
+        for (name, lines) in [("a.rs", 1300), ("b.rs", 40), ("c", 7)] {
+            self.write(&format!("{folder}/{name}"), "a line\n".repeat(lines));
         }
+        self.write(&format!("{folder}/in/d.txt"), "a line that is much longer\n".repeat(150));
         self.write(&format!("{folder}/in/deep/er/e.TXT"), "one line\n");
         self.write(&format!("{folder}/in/picture.bin"), [10, 0, 10, 0, 10]);
         self.write(&format!("{folder}/empty.rs"), "");
@@ -264,7 +265,7 @@ fn maps_are_read_and_what_is_no_polygon_is_told() {
         feature("LineString", "[[1,2],[3,4]]", "{}"),
         feature("Polygon", "[[[0,0],[1,1],[0,0]]]", "{}"),
         feature("Polygon", &format!("[{}]", square(89.0, 2.0)), "{}"),
-        feature("Polygon", "[[[0,0],[0.01,0.01],[0.01,0],[0,0.01],[0,0]]]", "{}"),
+        feature("Polygon", "[[[0,0],[0.01,0.01],[0.01,0],[0,0.02],[0,0]]]", "{}"),
     ];
     tools.write("town.geojson", collection(&features));
     let (_, said, noted) = tools.draw("map", &["town.geojson"]);

@@ -23,7 +23,7 @@ use puncta::{Background, Bounds, Cuboid, Glyphs, Grid, GridConfig, Scene};
 use std::process::ExitCode;
 use tree::{Tree, Where};
 
-/// Draws a folder as a city: the ground that a file takes says how large it is, the color of its what
+/// Draws a folder as a city: the ground that a file takes says how large it is, the color of a house what
 /// kind it is of, and districts are folders.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "city", version)]
