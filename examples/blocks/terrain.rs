@@ -91,6 +91,7 @@ impl Terrain {
         let (p, below) = (place.as_vec3(), height - 1 - place.z);
         let flat = Vec3::new(p.x, p.y, 0.0);
         let (high, rough) = self.climate(place.truncate(), height);
+        #[expect(clippy::cast_possible_truncation, reason = "it is 1 to 5")]
         let soil = 3 + (2.0 * noise(flat / 17.0, self.seed ^ 31)).round() as i32;
         let is_dry = sum(flat / 150.0, 2, 0.5, self.seed ^ 32) > 0.12;
         if below < soil {

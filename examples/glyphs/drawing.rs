@@ -1,11 +1,6 @@
 //! Drawing pictures of a scene, from the camera and from the sky.
 
-use super::{
-    backend::Backend,
-    built::Built,
-    options::Drawing as Options,
-    progress::Bar,
-};
+use super::{backend::Backend, built::Built, options::Drawing as Options, progress::Bar};
 use anyhow::Result;
 use puncta::{Amount, Bricks, Depth, FrustumCull, Glyph, Picture, Pipeline, View};
 
@@ -34,7 +29,7 @@ impl<'a, G: Glyph + 'static, B: Bricks> Drawing<'a, G, B> {
         let mut steps = self.pipeline.progressive(scene, bricks, view, budget)?;
         let all = steps.progress().left.records;
         let bar = Bar::counting("drawing", all);
-        while let Some(step) = steps.next() {
+        for step in &mut steps {
             bar.set(all - step?.left.records.min(all));
         }
         bar.finish();

@@ -23,16 +23,19 @@ impl Kinds {
         }
         let mut kinds: Vec<(&str, (u64, u64))> = sums.into_iter().collect();
         kinds.sort_by_key(|&(kind, (bytes, _))| (std::cmp::Reverse(bytes), kind.to_owned()));
-        let colors = kinds.iter().zip(PALETTE).map(|((kind, _), color)| ((*kind).to_owned(), color));
+        let colors =
+            kinds.iter().zip(PALETTE).map(|((kind, _), color)| ((*kind).to_owned(), color));
         let line = |name: &str, (bytes, files): (u64, u64), [r, g, b]: [u8; 3]| {
             format!("#{r:02x}{g:02x}{b:02x} {name}: {files} files, {bytes} bytes")
         };
-        let name = |kind: &str| if kind.is_empty() { "(no ending)".into() } else { format!(".{kind}") };
+        let name =
+            |kind: &str| if kind.is_empty() { "(no ending)".into() } else { format!(".{kind}") };
         let named = kinds.iter().zip(PALETTE);
         let mut key: Vec<String> =
             named.map(|((kind, sum), color)| line(&name(kind), *sum, color)).collect();
         if let Some(rest) = kinds.get(PALETTE.len()..).filter(|rest| !rest.is_empty()) {
-            let sum = rest.iter().fold((0, 0), |sum, (_, (bytes, files))| (sum.0 + bytes, sum.1 + files));
+            let sum =
+                rest.iter().fold((0, 0), |sum, (_, (bytes, files))| (sum.0 + bytes, sum.1 + files));
             key.push(line("others", sum, OTHER));
         }
         Self { colors: colors.collect(), key }

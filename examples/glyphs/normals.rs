@@ -19,7 +19,8 @@ pub(crate) fn normal(view: &View, picture: &Picture, column: u32, row: u32) -> V
     let place = |column: i64, row: i64| -> Option<(u32, DVec3)> {
         let is_inside = (0..i64::from(picture.width)).contains(&column)
             && (0..i64::from(picture.height)).contains(&row);
-        let at = is_inside.then(|| usize::try_from(row * i64::from(picture.width) + column).ok())??;
+        let at =
+            is_inside.then(|| usize::try_from(row * i64::from(picture.width) + column).ok())??;
         let id = *picture.id.get(at).filter(|id| **id != NO_RECORD)?;
         Some((id, point(view, [column as f64, row as f64], picture.depth[at].into())))
     };

@@ -19,7 +19,12 @@ pub(crate) struct Where {
     pub(crate) folder: PathBuf,
 
     /// Names of folders and files to leave out
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "target,node_modules")]
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_value = "target,node_modules"
+    )]
     pub(crate) without: Vec<String>,
 
     /// Take names that start with a dot too
@@ -35,7 +40,7 @@ pub(crate) struct Folder {
     pub(crate) bytes: u64,
     /// The largest first, as are the folders.
     pub(crate) files: Vec<File>,
-    pub(crate) folders: Vec<Folder>,
+    pub(crate) folders: Vec<Self>,
 }
 
 /// A file that is not empty.

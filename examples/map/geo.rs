@@ -1,5 +1,5 @@
 /*!
-GeoJSON files: polygons with a height.
+`GeoJSON` files: polygons with a height.
 
 Longitudes and latitudes are laid flat around the middle of the file: east is a longitude times the
 cosine of the middle latitude, in metres. That is right for a town, and distorts a continent.

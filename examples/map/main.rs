@@ -1,4 +1,4 @@
-//! Draws the polygons of a GeoJSON file as blocks, or a town of its own.
+//! Draws the polygons of a `GeoJSON` file as blocks, or a town of its own.
 //!
 //! ```text
 //! cargo run --release --example map -- FILE.geojson [--height NAME]
@@ -21,12 +21,12 @@ use puncta::{
 };
 use std::{path::PathBuf, process::ExitCode};
 
-/// Draws the polygons of a GeoJSON file, each as high as one of its properties says. Without a file
+/// Draws the polygons of a `GeoJSON` file, each as high as one of its properties says. Without a file
 /// it draws a small town that it makes up.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "map", version)]
 struct Options {
-    /// A GeoJSON file with longitudes and latitudes
+    /// A `GeoJSON` file with longitudes and latitudes
     file: Option<PathBuf>,
 
     /// The property that heights come from; by default height, building:height, or three times

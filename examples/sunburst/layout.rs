@@ -61,12 +61,7 @@ pub(crate) struct Sector {
 }
 
 /// Lays out a folder.
-pub(crate) fn build(
-    root: &Folder,
-    kinds: &Kinds,
-    height: Height,
-    color: ColorBy,
-) -> Vec<Sector> {
+pub(crate) fn build(root: &Folder, kinds: &Kinds, height: Height, color: ColorBy) -> Vec<Sector> {
     let levels = depth(root);
     let most = root.all_files().into_iter().map(|file| height.of(file)).fold(0.0, f64::max);
     let mut plan = Plan { rings: rings(levels), kinds, height, color, most, sectors: vec![] };
@@ -106,7 +101,8 @@ impl Plan<'_> {
         parts.sort_by_key(|(bytes, _)| std::cmp::Reverse(*bytes));
         let bytes: Vec<u64> = parts.iter().map(|(bytes, _)| *bytes).collect();
         let mut folders = 0;
-        for (index, (turns, (_, part))) in shares(turns, &bytes).into_iter().zip(parts).enumerate() {
+        for (index, (turns, (_, part))) in shares(turns, &bytes).into_iter().zip(parts).enumerate()
+        {
             match part {
                 Part::File(file) => {
                     let color = match (self.color, hue) {

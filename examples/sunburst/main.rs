@@ -62,12 +62,10 @@ fn build(options: &Options) -> Result<Built<Arc, Grid>> {
     if options.color == ColorBy::Kind {
         facts.extend(kinds.key);
     }
-    let table = arc(-TABLE, &Sector {
-        turns: [0.0, 1.0],
-        radii: [0.0, RADIUS * 1.35],
-        height: TABLE,
-        color: [0; 3],
-    });
+    let table = arc(
+        -TABLE,
+        &Sector { turns: [0.0, 1.0], radii: [0.0, RADIUS * 1.35], height: TABLE, color: [0; 3] },
+    );
     let (mut records, mut colors) = (vec![table], vec![[228, 230, 234, 255]]);
     let all = sectors.len();
     // What is narrower than numbers can tell is nothing.
@@ -85,7 +83,7 @@ fn build(options: &Options) -> Result<Built<Arc, Grid>> {
     let mut scene = Scene::new(records);
     scene.attributes.colors = Some(colors.into());
     let bricks = Grid::sort_scene(&mut scene, &GridConfig::default())?;
-    let reach = RADIUS * 0.98;
+    let reach = RADIUS * 0.92;
     let outlook = Outlook {
         points: Bounds {
             min: DVec3::new(-reach, -reach, 0.0),
@@ -95,7 +93,7 @@ fn build(options: &Options) -> Result<Built<Arc, Grid>> {
         .to_vec(),
         toward: DVec3::new(0.0, -1.0, 1.25),
         fov: 28.0,
-        zoom: 1.12,
+        zoom: 1.0,
         sun: DVec3::new(-1.0, 0.25, 1.2),
         background: Background::Gradient([206, 211, 219], [236, 238, 240]),
     };

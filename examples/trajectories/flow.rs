@@ -72,6 +72,7 @@ impl Flow {
         };
         let starts: Vec<DVec3> = (0..count).map(|_| start()).collect();
         let bar = Bar::spinner("following");
+        #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
         let follow = |start: DVec3| {
             let next = |place: DVec3| {
                 (0..SUBSTEPS).fold(place, |place, _| self.advance(place, step / SUBSTEPS as f64))
