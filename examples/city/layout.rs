@@ -24,6 +24,9 @@ const MARGIN: (f64, f64) = (0.035, 7.0);
 /// The margin of a house.
 const GAP: (f64, f64) = (0.09, 2.0);
 
+/// How much lighter houses are than their kind, so that districts can be told apart.
+const TINTS: [f64; 5] = [0.0, 0.22, 0.08, 0.32, 0.15];
+
 /// What makes houses high.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Height {
@@ -57,7 +60,7 @@ pub(crate) struct City {
 /// Lays out a folder.
 pub(crate) fn build(root: &Folder, kinds: &Kinds, height: Height) -> City {
     let highest = root.all_files().into_iter().map(|file| height.of(file)).fold(0.0, f64::max);
-    let mut plan = Plan { kinds, height, highest, city: City::default() };
+    let mut plan = Plan { kinds, height, highest, districts: 0, city: City::default() };
     let [width, height] = SIDES;
     plan.district(root, Rect { x: -width * 0.5, y: -height * 0.5, width, height }, 0);
     plan.city
@@ -67,12 +70,16 @@ struct Plan<'a> {
     kinds: &'a Kinds,
     height: Height,
     highest: f64,
+    /// How many districts there are so far.
+    districts: usize,
     city: City,
 }
 
 impl Plan<'_> {
     fn district(&mut self, folder: &Folder, rect: Rect, level: u16) {
         let floor = f64::from(level) * STEP;
+        let tint = TINTS[self.districts % TINTS.len()];
+        self.districts += 1;
         self.put(rect, [floor, floor + STEP], ground(level));
         let margin = if level == 0 { MARGIN.1 } else { (rect.shorter() * MARGIN.0).min(MARGIN.1) };
         // The larger ones first, files or folders.
@@ -87,7 +94,7 @@ impl Plan<'_> {
         let sizes: Vec<f64> = parts.iter().map(|(bytes, _)| *bytes as f64).collect();
         for (rect, (_, part)) in squarify(&sizes, rect.inset(margin)).into_iter().zip(parts) {
             match part {
-                Part::File(file) => self.house(file, rect, floor + STEP),
+                Part::File(file) => self.house(file, rect, floor + STEP, tint),
                 Part::Folder(folder) => {
                     let margin = (rect.shorter() * MARGIN.0 * 0.5).min(MARGIN.1 * 0.5);
                     self.district(folder, rect.inset(margin), level.saturating_add(1));
@@ -96,11 +103,12 @@ impl Plan<'_> {
         }
     }
 
-    fn house(&mut self, file: &File, rect: Rect, floor: f64) {
+    fn house(&mut self, file: &File, rect: Rect, floor: f64, tint: f64) {
         let rect = rect.inset((rect.shorter() * GAP.0).min(GAP.1));
         let share = if self.highest > 0.0 { self.height.of(file) / self.highest } else { 0.0 };
         let roof = floor + (share.sqrt() * HIGHEST).max(1.0);
-        self.put(rect, [floor, roof], self.kinds.color(&file.kind));
+        let color = mix(self.kinds.color(&file.kind), [255; 3], tint);
+        self.put(rect, [floor, roof], color);
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]

@@ -64,7 +64,7 @@ fn build(options: &Options) -> Result<Built<Arc, Grid>> {
     }
     let table = arc(
         -TABLE,
-        &Sector { turns: [0.0, 1.0], radii: [0.0, RADIUS * 1.35], height: TABLE, color: [0; 3] },
+        &Sector { turns: [0.0, 1.0], radii: [0.0, RADIUS * 1.8], height: TABLE, color: [0; 3] },
     );
     let (mut records, mut colors) = (vec![table], vec![[228, 230, 234, 255]]);
     let all = sectors.len();
