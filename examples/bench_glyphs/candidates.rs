@@ -64,8 +64,8 @@ pub(crate) fn all<'a>(devices: &Devices, scene: &'a Scene) -> Vec<Candidate<'a>>
             all.extend(own(OWN_EXPOSED, (exposed_blocks, view), &easels, cell(exposed_blocks)));
             all
         }
-        Content::Arcs(curves) => of_glyphs(curves, view, &easels),
-        Content::Tubes(curves) => of_glyphs(curves, view, &easels),
+        Content::Arcs(curves) => of_glyphs(curves, scene, &easels),
+        Content::Tubes(curves) => of_glyphs(curves, scene, &easels),
     }
 }
 
@@ -98,10 +98,11 @@ fn of_boxes<'a>(boxes: &'a Boxes, easels: &Easels) -> Vec<Candidate<'a>> {
 
 fn of_glyphs<'a, G: Glyph, B: Bricks>(
     curves: &'a Curves<G, B>,
-    view: &'a View,
+    scene: &'a Scene,
     easels: &Easels,
 ) -> Vec<Candidate<'a>> {
-    let place = Place { curves, levels: curves.levels(view), view };
+    let view = &scene.view;
+    let place = Place { curves, levels: curves.levels(view), view, is_whole: scene.is_whole };
     let easel = &easels.plain;
     let mut all: Vec<Candidate<'a>> = vec![
         (Shape::List.name(), boxed(place.baked(easel, false))),

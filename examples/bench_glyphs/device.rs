@@ -25,19 +25,23 @@ impl Device {
     /// it can.
     pub(crate) fn new(name: Option<&str>, memory: u64) -> Result<Self> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-        // It is found by the rules of the library, and then asked for more.
-        let known = Gpu::new(name, Extent::Full)?;
-        let label = |adapter: &wgpu::Adapter| {
-            let info = adapter.get_info();
-            known.name().contains(&info.name)
-                && known.name().contains(&format!("({:?},", info.backend))
+        let adapter = match name {
+            None => pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
+                power_preference: wgpu::PowerPreference::HighPerformance,
+                ..Default::default()
+            }))?,
+            Some(name) => {
+                let has_name = |adapter: &wgpu::Adapter| {
+                    adapter.get_info().name.to_lowercase().contains(&name.to_lowercase())
+                };
+                let all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+                all.into_iter().find(has_name).with_context(|| format!("no adapter {name:?}"))?
+            }
         };
-        let adapter = adapters.iter().find(|adapter| label(adapter)).context("no adapter")?;
         let counting = adapter.features() & Features::PIPELINE_STATISTICS_QUERY;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("bench_glyphs"),
-            required_features: Gpu::useful_features(adapter) | counting,
+            required_features: Gpu::useful_features(&adapter) | counting,
             required_limits: adapter.limits(),
             ..Default::default()
         };

@@ -26,6 +26,8 @@ pub(crate) struct Place<'a, G: Glyph, B> {
     pub(crate) curves: &'a Curves<G, B>,
     pub(crate) levels: Levels,
     pub(crate) view: &'a View,
+    /// Whether all of the scene is in the picture, so that nothing is left out.
+    pub(crate) is_whole: bool,
 }
 
 impl<G: Glyph, B: Bricks> Place<'_, G, B> {
@@ -196,8 +198,9 @@ impl<G: Glyph, B: Bricks> Place<'_, G, B> {
                 }
             }
         }
-        // The whole scene is in the picture, so nothing is left out.
-        runs.iter_mut().for_each(|run| run.expected = Some(run.room));
+        if self.is_whole {
+            runs.iter_mut().for_each(|run| run.expected = Some(run.room));
+        }
         Ok(runs)
     }
 

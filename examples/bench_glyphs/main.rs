@@ -69,6 +69,9 @@ pub(crate) struct Options {
     /// After so many seconds, measure nothing again that was measured once
     #[arg(long, default_value_t = 30.0)]
     seconds: f64,
+    /// Stand so close that much of the scene lies beside the picture
+    #[arg(long)]
+    close: bool,
     /// How far curves may be off, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 0.25)]
     tolerance: f32,
@@ -133,7 +136,7 @@ fn run(mut options: Options) -> Result<()> {
     tell(&format!("{adapter}; {}", conditions(&options)));
     let (mut found, mut drawn) = (Vec::new(), Vec::new());
     for name in &options.scenes {
-        let scene = Scene::new(name, options.size, options.tolerance).context(name.clone())?;
+        let scene = Scene::new(name, &options).context(name.clone())?;
         let rows = measure::measure(&devices, &scene, &options).context(name.clone())?;
         tell(&report::table(&scene, &rows));
         found.push(report::json(&scene, &rows));

@@ -1,6 +1,7 @@
 //! Scenes by their names, and how they are seen.
 
 use crate::{
+    Options,
     boxes::Boxes,
     curves::{self, Curves},
 };
@@ -12,12 +13,17 @@ use puncta::{
     core::Camera,
 };
 
+/// At what share of the distance the eye stands if it is close. All of the scene is before it still.
+const CLOSE: f64 = 0.45;
+
 /// A scene: what it is made of, and the view.
 #[derive(Debug)]
 pub(crate) struct Scene {
     pub(crate) name: String,
     pub(crate) content: Content,
     pub(crate) view: View,
+    /// Whether all of it is in the picture.
+    pub(crate) is_whole: bool,
 }
 
 /// What a scene is made of.
@@ -32,7 +38,8 @@ pub(crate) enum Content {
 
 impl Scene {
     /// A scene such as `blocks:32`.
-    pub(crate) fn new(name: &str, [width, height]: [u32; 2], tolerance: f32) -> Result<Self> {
+    pub(crate) fn new(name: &str, options: &Options) -> Result<Self> {
+        let tolerance = options.tolerance;
         let (kind, size) = parse(name)?;
         let is_world = matches!(kind, "blocks" | "caves");
         ensure!(!is_world || size <= 256, "a world has up to 256 cells along a side");
@@ -44,8 +51,16 @@ impl Scene {
             "tubes" => Content::Tubes(Box::new(tubes(size, tolerance))),
             _ => bail!("{kind:?} is none of blocks, caves, cuboids, arcs, tubes"),
         };
-        let view = overview(&content.bounds(), [width, height])?;
-        Ok(Self { name: name.to_owned(), content, view })
+        ensure!(content.len() > 0, "nothing is in it");
+        let bounds = content.bounds();
+        let mut view = overview(&bounds, options.size)?;
+        if options.close {
+            let center = bounds.center();
+            let eye = center.lerp(view.eye(), CLOSE);
+            let [width, height] = options.size;
+            view = View::look_at(eye, center, DVec3::Z)?.with_size(width, height)?;
+        }
+        Ok(Self { name: name.to_owned(), content, view, is_whole: !options.close })
     }
 
     /// The cells along a side of a world, and the sharpness of curves.
