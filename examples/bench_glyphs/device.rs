@@ -71,6 +71,14 @@ impl Device {
         Ok(())
     }
 
+    /// Says why there cannot be a picture of this size.
+    pub(crate) fn check_size(&self, size: [u32; 2]) -> Result<()> {
+        let most = self.gpu.device().limits().max_texture_dimension_2d;
+        let is_possible = size.iter().all(|side| (1..=most).contains(side));
+        ensure!(is_possible, "a picture of {size:?} pixels: its sides must be 1 to {most}");
+        Ok(())
+    }
+
     /// Says why a shader cannot see a buffer of this size.
     pub(crate) fn check_binding(&self, bytes: u64) -> Result<()> {
         let most = self.binding_max();

@@ -127,11 +127,12 @@ fn run(mut options: Options) -> Result<()> {
     if options.errors {
         return run_errors(&options);
     }
-    let (name, memory) = (options.adapter.as_deref(), options.memory << 20);
+    let (name, memory) = (options.adapter.as_deref(), options.memory.saturating_mul(1 << 20));
     let devices = Devices {
         plain: Rc::new(Device::new(name, memory)?),
         meshes: Device::with_meshes(name, memory)?.map(Rc::new),
     };
+    devices.plain.check_size(options.size)?;
     let adapter = devices.plain.gpu.name();
     tell(&format!("{adapter}; {}", conditions(&options)));
     let (mut found, mut drawn) = (Vec::new(), Vec::new());

@@ -60,11 +60,9 @@ pub(crate) fn measure(devices: &Devices, scene: &Scene, options: &Options) -> Re
         }
     }
     in_turn(options, &mut subjects, |subject| subject.draw(Sight::Here))?;
-    let mut away: Vec<_> = Vec::new();
-    away.extend(subjects.iter_mut().filter(|(one, _)| one.first.has_away).map(|one| {
-        let (subject, _) = one;
-        (subject, vec![])
-    }));
+    let can = |(subject, _): &&mut (Subject<'_>, Vec<Span>)| subject.first.has_away;
+    let away = subjects.iter_mut().filter(can);
+    let mut away: Vec<_> = away.map(|(subject, _)| (subject, vec![])).collect();
     in_turn(options, &mut away, |subject| subject.draw(Sight::Away))?;
     let mut away: Vec<_> = away.into_iter().map(|(one, spans)| (one.name, spans)).collect();
     for (Subject { name, first, .. }, frames) in subjects {
