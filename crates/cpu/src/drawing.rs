@@ -122,6 +122,7 @@ mod tests {
     use crate::{Spheres, band::Members};
     use glam::DVec3;
     use proptest::prelude::*;
+    use puncta_avc::Level;
     use puncta_core::Sphere;
 
     fn view(width: u32, height: u32, is_perspective: bool) -> View {
