@@ -11,8 +11,8 @@
 use glam::{DVec3, Vec4};
 use puncta::{
     Brick, Glyph, Glyphs, NO_RECORD, Picture, Scene, View,
-    avc::{Lens, Mesh, Sight},
-    core::{Bounder, Camera},
+    avc::{Lens, Levels, Mesh, Sight},
+    core::Camera,
 };
 use rayon::prelude::*;
 
@@ -24,6 +24,9 @@ pub(crate) type Pixels = f64;
 
 /// What the renderer on the CPU promises.
 pub(crate) const CPU: Pixels = 1e-4;
+
+/// How many pixels of a row are looked at together.
+const RUN: u32 = 8;
 
 /// Up to how many units in the last place of `f32` two depths count as equal.
 const DEPTH_ULPS: f64 = 4.0;
@@ -68,13 +71,6 @@ impl Ray {
         }
     }
 
-    /// The distance between the ray and a point.
-    fn miss(&self, point: DVec3) -> f64 {
-        let direction = self.direction.normalize();
-        let offset = point - self.start;
-        (offset - direction * offset.dot(direction)).length()
-    }
-
     /// The view depth at which it meets a triangle, and whether from in front (Möller and Trumbore,
     /// *Fast, Minimum Storage Ray/Triangle Intersection*, 1997).
     fn meet(&self, [a, b, c]: [DVec3; 3]) -> Option<(f64, bool)> {
@@ -115,22 +111,43 @@ fn rays(view: &View, (column, row): (u32, u32), hair: Pixels) -> [Ray; 9] {
 struct Solid {
     /// What the user knows it by.
     id: u32,
-    center: DVec3,
-    radius: f64,
     triangles: Vec<[DVec3; 3]>,
 }
 
 impl Solid {
-    /// Whether a ray, or one that is up to a hair away, may meet it.
-    fn is_near(&self, view: &View, ray: &Ray, hair: Pixels) -> bool {
-        let spread = if view.is_perspective() { self.center.length() + self.radius } else { 1.0 };
-        let reach = self.radius + 2.0 * hair * view.pixel_size() * spread;
-        ray.miss(self.center) <= reach * (1.0 + 1e-9)
+    /// The triangles that rays of a row, or up to two hairs away, may meet, for each [`RUN`] of its
+    /// pixels: all others lie on one side of a plane of such rays.
+    fn of_row(&self, view: &View, row: u32, hair: Pixels) -> Vec<Vec<[DVec3; 3]>> {
+        let slack = 2.0 * hair * view.pixel_size();
+        let ray = |column: u32, row: u32| view.ray(f64::from(column), f64::from(row));
+        // How far the corners lie beyond the plane of rays of this slope along an axis, at most.
+        let beyond = |triangle: &[DVec3; 3], (axis, slope): (DVec3, f64)| {
+            let far = triangle.map(|corner| {
+                let spread = if view.is_perspective() { corner.dot(view.forward()) } else { 1.0 };
+                let at = corner.dot(axis) - slope * spread;
+                at + slack * spread.abs() + 1e-9 * corner.length()
+            });
+            far[0].max(far[1]).max(far[2])
+        };
+        let (up, right, y) = (view.up(), view.right(), ray(0, row).y);
+        let in_row: Vec<&[DVec3; 3]> = self
+            .triangles
+            .iter()
+            .filter(|it| beyond(it, (up, y)) >= 0.0 && beyond(it, (-up, -y)) >= 0.0)
+            .collect();
+        let run = |first: u32| {
+            let (left, end) = (ray(first, row).x, ray(first + RUN - 1, row).x);
+            let is_near = |it: &&[DVec3; 3]| {
+                beyond(it, (right, left)) >= 0.0 && beyond(it, (-right, -end)) >= 0.0
+            };
+            in_row.iter().copied().filter(is_near).copied().collect()
+        };
+        (0..view.width()).step_by(RUN as usize).map(run).collect()
     }
 
     /// The smallest view depth, from `near` on, at which a ray meets a triangle from in front.
-    fn enter(&self, ray: &Ray, near: f64) -> Option<f64> {
-        let meets = self.triangles.iter().filter_map(|&triangle| ray.meet(triangle));
+    fn enter(triangles: &[[DVec3; 3]], ray: &Ray, near: f64) -> Option<f64> {
+        let meets = triangles.iter().filter_map(|&triangle| ray.meet(triangle));
         let seen = meets.filter(|&(depth, is_front)| {
             // What f32 cannot hold is not seen either.
             is_front && depth >= near && depth <= f64::from(f32::MAX)
@@ -159,18 +176,6 @@ pub(crate) struct Reference {
     solids: Vec<Solid>,
 }
 
-/// How finely the records of a scene are drawn, by record: the place where their brick begins.
-pub(crate) fn nearest(camera: &Camera, bricks: &[Brick], records: usize) -> Vec<f32> {
-    let bounder = Bounder::new(camera);
-    let mut nearest = vec![f32::NAN; records];
-    for brick in bricks.iter().rev() {
-        let bound = bounder.bound(&brick.bounds, brick.radius_max);
-        let range = brick.records.start as usize..brick.records.end as usize;
-        nearest[range].fill(bound.nearest);
-    }
-    nearest
-}
-
 impl Reference {
     /// Checks on the way that the vertices of each record lie in its ball, and that in the box of the
     /// scene's record.
@@ -182,17 +187,17 @@ impl Reference {
     ) -> Self {
         let camera = Camera::new(view, scene.origin);
         let lens = Lens::new(&camera, glyphs.tolerance);
-        let nearest = nearest(&camera, bricks, scene.records.len());
+        let levels = Levels::new(&camera, bricks);
         let cloud = glyphs.cloud(&scene.records);
         let solid = |index: usize| {
             let position = scene.records[index].position();
-            let form = G::form(&cloud, index, &lens.sight(position, nearest[index]));
+            let level = levels.of(u32::try_from(index).unwrap());
+            let nearest = lens.nearest(level, &cloud, index);
+            let form = G::form(&cloud, index, &lens.sight(position, nearest));
             let ball = G::ball(&cloud, index);
             let place = scene.origin - view.eye();
             Solid {
                 id: scene.id(u32::try_from(index).unwrap()),
-                center: place + ball.0.as_dvec3(),
-                radius: f64::from(ball.1),
                 triangles: triangles::<G>(&form, position.as_dvec3(), ball)
                     .into_iter()
                     .map(|triangle| triangle.map(|corner| place + corner))
@@ -208,10 +213,12 @@ impl Reference {
         let width = self.view.width();
         let row = |row: u32| -> Result<Verdict, String> {
             let mut verdict = Verdict::default();
+            let of_row = |solid: &Solid| solid.of_row(&self.view, row, hair);
+            let triangles: Vec<Vec<Vec<[DVec3; 3]>>> = self.solids.iter().map(of_row).collect();
             for column in 0..width {
                 let pixel = (row * width + column) as usize;
                 let (id, depth) = (picture.id[pixel], picture.depth[pixel]);
-                let (nearest, others) = self.answers((column, row), hair);
+                let (nearest, others) = self.answers(&triangles, (column, row), hair);
                 check(nearest, &others, id, depth).map_err(|what| {
                     format!("column {column}, row {row}: {what}; {nearest:?} {others:?}")
                 })?;
@@ -226,16 +233,22 @@ impl Reference {
     }
 
     /// The nearest record that surely is there, and those that would be seen if hairs fell otherwise.
-    fn answers(&self, pixel: (u32, u32), hair: Pixels) -> (Option<Candidate>, Vec<Candidate>) {
+    fn answers(
+        &self,
+        triangles: &[Vec<Vec<[DVec3; 3]>>],
+        pixel: (u32, u32),
+        hair: Pixels,
+    ) -> (Option<Candidate>, Vec<Candidate>) {
         let rays = rays(&self.view, pixel, hair);
         let near = self.view.near();
         let near_hair = DEPTH_ULPS * ulp(near);
         let mut candidates: Vec<Candidate> = Vec::new();
         for (index, solid) in self.solids.iter().enumerate() {
-            if !solid.is_near(&self.view, &rays[0], hair) {
+            let triangles = &triangles[index][(pixel.0 / RUN) as usize];
+            if triangles.is_empty() {
                 continue;
             }
-            let hits = rays.map(|ray| solid.enter(&ray, near - near_hair));
+            let hits = rays.map(|ray| Solid::enter(triangles, &ray, near - near_hair));
             let known = || hits.iter().flatten().copied();
             let Some(low) = known().reduce(f64::min) else { continue };
             let high = known().fold(low, f64::max);
@@ -319,10 +332,11 @@ pub(crate) fn footprint<G: Glyph>(
     let camera = Camera::new(view, scene.origin);
     let lens = Lens::new(&camera, glyphs.tolerance);
     let cloud = glyphs.cloud(&scene.records);
-    let nearest = nearest(&camera, std::slice::from_ref(brick), scene.records.len());
+    let level = Levels::new(&camera, std::slice::from_ref(brick)).of(0);
+    let nearest = lens.nearest(level, &cloud, 0);
     let position = scene.records[0].position();
     // From everywhere: nothing is left out.
-    let sight = Sight { eye: Vec4::ZERO, ..lens.sight(position, nearest[0]) };
+    let sight = Sight { eye: Vec4::ZERO, ..lens.sight(position, nearest) };
     let form = G::form(&cloud, 0, &sight);
     Mesh::of::<G>(&form).check().unwrap();
     let place = scene.origin - view.eye();

@@ -206,7 +206,7 @@ impl DepthRow {
     pub fn at(&self, column: f64) -> f64 {
         let linear = self.base + self.slope * (column - self.from);
         let depth = if self.is_perspective { 1.0 / linear } else { linear };
-        // Of a facet that is seen edge-on, the plane says nothing. Ordered so that NaN is the nearest.
+        // Of a facet that is seen edge-on, the plane says nothing; nor does NaN, which becomes the farthest.
         depth.min(self.depths[1]).max(self.depths[0])
     }
 }

@@ -17,7 +17,7 @@ mod extent;
 mod facet;
 mod frame;
 mod glyph;
-mod holders;
+mod level;
 mod mesh;
 mod node;
 mod polygon;
@@ -41,7 +41,7 @@ pub use crate::{
     disc::{Disc, DiscForm},
     facet::{DepthRow, Facet},
     glyph::{Cloud, Fault, Faults, Glyph, Glyphs, Size},
-    holders::Holders,
+    level::{Level, Levels},
     mesh::Mesh,
     node::{Node, NodeForm, NodeStyle, Trajectories, TrajectoryFaults},
     polygon::{Polygon, PolygonError, PolygonFailure, PolygonForm, PolygonSet},

@@ -1,6 +1,6 @@
 //! Surfaces: what is seen of one glyph, in `f64`.
 
-use crate::{Cloud, Facet, Glyph, Lens};
+use crate::{Cloud, Facet, Glyph, Lens, Level};
 use glam::DVec3;
 
 /// The facets of a glyph, as they are seen in a picture. It can be used for one glyph after the other.
@@ -23,17 +23,18 @@ pub struct Meeting {
 }
 
 impl Surface {
-    /// Makes it that of a record, whose brick begins at the view depth `nearest`.
+    /// Makes it that of a record, at a level of detail.
     pub fn fill<G: Glyph>(
         &mut self,
         lens: &Lens<'_>,
         cloud: &Cloud<'_, G>,
         index: usize,
-        nearest: f32,
+        level: Level,
     ) {
         self.vertices.clear();
         self.facets.clear();
         let position = cloud.get(index).position();
+        let nearest = lens.nearest(level, cloud, index);
         let form = G::form(cloud, index, &lens.sight(position, nearest));
         let size = G::size(&form);
         if size.triangles == 0 {

@@ -6,6 +6,7 @@ use crate::{
     tiles::Tiles,
 };
 use glam::DVec3;
+use puncta_avc::Level;
 use puncta_core::{Amount, Camera, ScreenBound, ScreenBox, depth_below, nearest_depth};
 use std::{
     ops::{Range, RangeInclusive},
@@ -16,6 +17,8 @@ use std::{
 #[derive(Debug)]
 pub(crate) struct Piece<'a> {
     pub(crate) bound: ScreenBound,
+    /// How finely its records are drawn.
+    pub(crate) level: Level,
     pub(crate) members: Members<'a>,
     /// Whether a band had to draw it, because it was not hidden.
     pub(crate) is_drawn: AtomicBool,
@@ -93,12 +96,12 @@ impl Band<'_> {
                 continue;
             }
             piece.is_drawn.store(true, Ordering::Relaxed);
-            let nearest = piece.bound.nearest;
+            let level = piece.level;
             match &piece.members {
                 Members::All(range) => {
-                    range.clone().for_each(|id| brush.draw(self, id, nearest));
+                    range.clone().for_each(|id| brush.draw(self, id, level));
                 }
-                Members::Some(ids) => ids.iter().for_each(|&id| brush.draw(self, id, nearest)),
+                Members::Some(ids) => ids.iter().for_each(|&id| brush.draw(self, id, level)),
             }
         }
     }

@@ -122,6 +122,7 @@ mod tests {
     use crate::{Spheres, band::Members};
     use glam::DVec3;
     use proptest::prelude::*;
+    use puncta_avc::Level;
     use puncta_core::Sphere;
 
     fn view(width: u32, height: u32, is_perspective: bool) -> View {
@@ -156,7 +157,7 @@ mod tests {
                 for range in [0..records.len() / 2, records.len() / 2..records.len()] {
                     let [start, end] = [range.start, range.end].map(|i| u32::try_from(i).unwrap());
                     let members = Members::All(start..end);
-                    let pieces = [Piece { bound, members, is_drawn: false.into() }];
+                    let pieces = [Piece { bound, level: Level::Record, members, is_drawn: false.into() }];
                     drawing.draw((&camera, None), (&Spheres, &records), &pieces);
                     drawing.freshen();
                     let across = drawing.stride / tiles::SIDE;

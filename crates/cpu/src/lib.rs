@@ -49,7 +49,6 @@ mod error;
 mod image;
 mod knowledge;
 mod legend;
-mod levels;
 mod renderer;
 mod renders;
 mod shade;

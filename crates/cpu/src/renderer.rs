@@ -9,7 +9,10 @@ use crate::{
     shape::{Shape, Spheres},
     survey::{self, Outlook},
 };
-use puncta_core::{Amount, Camera, Content, Picture, Record, ScreenBound, View, VisibleBrick};
+use puncta_avc::Level;
+use puncta_core::{
+    Amount, Brick, Camera, Content, Picture, Record, ScreenBound, View, VisibleBrick,
+};
 use std::sync::atomic::AtomicBool;
 
 /// The share of the bricks that are drawn before blocks are tested for the first time, and the
@@ -131,7 +134,9 @@ impl<S> CpuRenderer<S> {
         let pieces: Vec<Piece<'_>> = runs
             .iter()
             .zip(bounds)
-            .map(|((_, ids), bound)| piece(bound, Members::Some(ids)))
+            .map(|((brick, ids), bound)| {
+                piece(&content.bricks[*brick as usize], bound, Members::Some(ids))
+            })
             .collect();
         self.draw_pieces(content, &camera, &pieces)?;
         Ok(runs.iter().map(|(_, ids)| ids.len() as u64).sum())
@@ -211,12 +216,12 @@ impl<S> CpuRenderer<S> {
         S: Shape<R>,
     {
         let bounds = self.knowledge.bounds(content, camera, &indices(bricks));
-        let members = |brick: &VisibleBrick| {
-            Members::All(content.bricks[brick.index() as usize].records.clone())
+        let whole = |(brick, bound): (&VisibleBrick, ScreenBound)| {
+            let brick = &content.bricks[brick.index() as usize];
+            piece(brick, bound, Members::All(brick.records.clone()))
         };
         let seen = bricks.iter().zip(bounds).filter(|(_, bound)| !bound.is_empty());
-        let pieces: Vec<Piece<'_>> =
-            seen.map(|(brick, bound)| piece(bound, members(brick))).collect();
+        let pieces: Vec<Piece<'_>> = seen.map(whole).collect();
         self.draw_pieces(content, camera, &pieces)
     }
 
@@ -247,6 +252,7 @@ fn indices(bricks: &[VisibleBrick]) -> Vec<u32> {
     bricks.iter().map(VisibleBrick::index).collect()
 }
 
-fn piece(bound: ScreenBound, members: Members<'_>) -> Piece<'_> {
-    Piece { bound, members, is_drawn: AtomicBool::new(false) }
+fn piece<'a>(brick: &Brick, bound: ScreenBound, members: Members<'a>) -> Piece<'a> {
+    let level = Level::of(brick, bound.nearest);
+    Piece { bound, level, members, is_drawn: AtomicBool::new(false) }
 }

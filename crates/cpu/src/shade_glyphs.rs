@@ -13,10 +13,9 @@ over the pixels that show it.
 use crate::{
     Error, Shading,
     image::{check, image, to_f32},
-    levels::Levels,
 };
 use glam::DVec3;
-use puncta_avc::{Cloud, Facet, Glyph, Glyphs, Lens, Surface};
+use puncta_avc::{Cloud, Facet, Glyph, Glyphs, Lens, Levels, Surface};
 use puncta_core::{Bricks, Camera, Image, NO_RECORD, Picture, Scene, View};
 use rayon::prelude::*;
 
@@ -91,7 +90,7 @@ fn shares<G: Glyph>(
         let mut surface = Surface::default();
         for pixels in pixels_by_id(ids).chunk_by(|a, b| a.0 == b.0) {
             let id = pixels[0].0;
-            surface.fill(lens, cloud, id as usize, levels.nearest(id));
+            surface.fill(lens, cloud, id as usize, levels.of(id));
             band.shade(&surface, pixels, lens);
         }
     });
@@ -271,7 +270,7 @@ mod tests {
                     continue;
                 }
                 let (column, row) = ((pixel % 61) as f64, (pixel / 61) as f64);
-                surface.fill(&lens, &cloud, id as usize, levels.nearest(id));
+                surface.fill(&lens, &cloud, id as usize, levels.of(id));
                 prop_assert!((0.1..=1.0).contains(&found[pixel]));
                 match surface.meet(&lens, column, row) {
                     Some(met) => prop_assert_eq!(found[pixel], light.mix(met.normal, met.facing)),

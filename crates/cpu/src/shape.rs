@@ -1,6 +1,7 @@
 //! Shapes: what records are, and how one of them is drawn into a band.
 
 use crate::band::Band;
+use puncta_avc::Level;
 use puncta_core::{Camera, Record};
 
 /// What records are drawn as.
@@ -17,8 +18,8 @@ pub(crate) trait Shape<R: Record>: Sync {
 
 /// Draws records into a band.
 pub(crate) trait Brush {
-    /// Draws a record, whose brick begins at the view depth `nearest`.
-    fn draw(&mut self, band: &mut Band<'_>, id: u32, nearest: f32);
+    /// Draws a record at a level of detail.
+    fn draw(&mut self, band: &mut Band<'_>, id: u32, level: Level);
 }
 
 /// Records are spheres of their radius.
@@ -44,7 +45,7 @@ pub(crate) struct SphereBrush<'a, R> {
 
 impl<R: Record> Brush for SphereBrush<'_, R> {
     #[inline]
-    fn draw(&mut self, band: &mut Band<'_>, id: u32, _nearest: f32) {
+    fn draw(&mut self, band: &mut Band<'_>, id: u32, _level: Level) {
         let record = &self.records[id as usize];
         band.draw_sphere(record.position().as_dvec3(), f64::from(record.radius()), id);
     }

@@ -13,7 +13,7 @@ use crate::{
     shape::{Brush, Shape},
 };
 use glam::{DVec2, DVec3};
-use puncta_avc::{Cloud, DepthRow, Facet, Glyph, Glyphs, Lens};
+use puncta_avc::{Cloud, DepthRow, Facet, Glyph, Glyphs, Lens, Level};
 use puncta_core::{Camera, depth_below};
 
 /// The largest side, in pixels, of a facet that is not looked at by tiles before it is drawn.
@@ -69,7 +69,7 @@ impl Corner {
 }
 
 impl<G: Glyph> Brush for GlyphBrush<'_, G> {
-    fn draw(&mut self, band: &mut Band<'_>, id: u32, nearest: f32) {
+    fn draw(&mut self, band: &mut Band<'_>, id: u32, level: Level) {
         let index = id as usize;
         let camera = self.lens.camera;
         let (center, radius) = G::ball(&self.cloud, index);
@@ -80,6 +80,7 @@ impl<G: Glyph> Brush for GlyphBrush<'_, G> {
             return;
         }
         let position = self.cloud.get(index).position();
+        let nearest = self.lens.nearest(level, &self.cloud, index);
         let form = G::form(&self.cloud, index, &self.lens.sight(position, nearest));
         let size = G::size(&form);
         if size.triangles == 0 {

@@ -13,7 +13,8 @@ use crate::{
     store::Store,
     table::Known,
 };
-use puncta_core::{Amount, Bounder, Brick, Content, Record, VisibleBrick};
+use puncta_avc::Level;
+use puncta_core::{Amount, Bounder, Content, Record, VisibleBrick};
 use std::ops::Range;
 
 /// The most records that are placed one by one in a batch, and the most work for the CPU.
@@ -108,10 +109,11 @@ impl<S> GpuRenderer<S> {
         let Some(camera) = self.frame.as_ref().and_then(|frame| frame.camera.clone()) else {
             return Ok(());
         };
-        let Brick { bounds, radius_max, .. } = &content.bricks[brick as usize];
-        let bound = Bounder::new(&camera).bound(bounds, *radius_max);
+        let holder = &content.bricks[brick as usize];
+        let bound = Bounder::new(&camera).bound(&holder.bounds, holder.radius_max);
+        let level = Level::of(holder, bound.nearest);
         for index in records {
-            let near = Near { camera: &camera, scene: content.scene, index, brick: bound };
+            let near = Near { camera: &camera, scene: content.scene, index, level };
             let close = self.shape.close(&near);
             if self.is_crowded(batch) {
                 self.flush(content, batch)?;

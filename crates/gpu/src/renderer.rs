@@ -314,8 +314,7 @@ impl<S> GpuRenderer<S> {
         let indices: Vec<u32> = bricks.iter().map(VisibleBrick::index).collect();
         if let Some(camera) = &frame.camera {
             self.shape.prepare(&self.gpu, camera)?;
-            let camera = (camera, self.shape.radius_min());
-            frame.table.learn(content, camera, &indices);
+            frame.table.learn(content, (camera, &self.shape), &indices);
         }
         Ok(indices)
     }

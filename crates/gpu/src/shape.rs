@@ -9,7 +9,8 @@ use crate::{
     store::{Layout, Page},
 };
 use glam::{DVec3, Vec3};
-use puncta_core::{Camera, Content, Picture, Record, Scene, ScreenBound};
+use puncta_avc::Level;
+use puncta_core::{Brick, Camera, Content, Picture, Record, Scene, ScreenBound};
 use std::{fmt, ops::Range};
 
 /// What records of a type are drawn as.
@@ -37,6 +38,11 @@ pub(crate) trait Draw: fmt::Debug + Sync {
 
     /// The smallest radius of what is drawn, in pixels.
     fn radius_min(&self) -> f32;
+
+    /// Whether the records of a brick, which begins at a view depth, must be looked at one by one.
+    fn is_near(&self, _brick: &Brick, _nearest: f32) -> bool {
+        false
+    }
 
     /// The numbers of pixels that are drawn by one lane.
     fn small(&self, gpu: &Gpu) -> u32;
@@ -68,8 +74,8 @@ pub(crate) struct Near<'a, R> {
     pub(crate) camera: &'a Camera,
     pub(crate) scene: &'a Scene<R>,
     pub(crate) index: u32,
-    /// The bound of the brick.
-    pub(crate) brick: ScreenBound,
+    /// How finely the records of its brick are drawn.
+    pub(crate) level: Level,
 }
 
 /// How it is drawn.

@@ -23,8 +23,8 @@ use crate::{
     store::Layout,
     table::bound_of_sphere,
 };
-use puncta_avc::{Glyph, Glyphs, Holders, Lens, PRELUDE, Surface};
-use puncta_core::{Bounder, Camera, Content, NO_RECORD, Picture, Scene, ScreenBound};
+use puncta_avc::{Glyph, Glyphs, Lens, Level, Levels, PRELUDE, Surface};
+use puncta_core::{Brick, Camera, Content, NO_RECORD, Picture, Scene, ScreenBound};
 use rayon::prelude::*;
 use std::{fmt, ops::Range};
 
@@ -219,22 +219,20 @@ impl<G: Glyph> Shape<G> for Solids<G> {
         let Some(bound) = bound_of_sphere(camera, center, radius) else { return Close::Nothing };
         if is_plain_sphere(camera, center, radius) {
             let position = cloud.get(index).position();
-            // Its level of detail is that of its brick.
-            let bound = ScreenBound { nearest: near.brick.nearest, ..bound };
+            let lens = Lens::new(camera, self.glyphs.tolerance);
+            let bound = ScreenBound { nearest: lens.nearest(near.level, &cloud, index), ..bound };
             return Close::Plain(position, camera.place(position.as_dvec3()), bound);
         }
         let mut surface = Surface::default();
         let lens = Lens::new(camera, self.glyphs.tolerance);
-        surface.fill(&lens, &cloud, index, near.brick.nearest);
+        surface.fill(&lens, &cloud, index, near.level);
         Close::Exact(Solid { surface, bound, id: near.scene.id(near.index) })
     }
 
     fn refine(&self, camera: &Camera, content: &Content<'_, G>, picture: &mut Picture) {
-        let (lens, holders) = (
-            Lens::new(camera, self.glyphs.tolerance),
-            Holders::new(content.bricks, content.scene.records.len()),
-        );
-        let (bounder, width) = (Bounder::new(camera), picture.width as usize);
+        let (lens, levels) =
+            (Lens::new(camera, self.glyphs.tolerance), Levels::new(camera, content.bricks));
+        let width = picture.width as usize;
         let cloud = self.glyphs.cloud(&content.scene.records);
         // The pixels of a record together, so that its surface is made once.
         let seen = |(pixel, &id): (usize, &u32)| (id != NO_RECORD).then_some((id, pixel));
@@ -243,11 +241,8 @@ impl<G: Glyph> Shape<G> for Solids<G> {
         pixels.par_sort_unstable();
         let exact = |pixels: &[(u32, usize)]| {
             let (id, _) = pixels[0];
-            let brick = holders.find(id).and_then(|brick| content.bricks.get(brick as usize));
-            let Some(brick) = brick else { return Vec::new() };
-            let nearest = bounder.bound(&brick.bounds, brick.radius_max).nearest;
             let mut surface = Surface::default();
-            surface.fill(&lens, &cloud, id as usize, nearest);
+            surface.fill(&lens, &cloud, id as usize, levels.of(id));
             let depth = |&(_, pixel): &(u32, usize)| {
                 let (column, row) = ((pixel % width) as f64, (pixel / width) as f64);
                 surface.depth_around(column, row, HAIR).map(|depth| (pixel, depth))
@@ -273,6 +268,11 @@ impl<G: Glyph> Draw for Solids<G> {
 
     fn radius_min(&self) -> f32 {
         0.0
+    }
+
+    /// Records of bricks that are near have levels of their own, which only the CPU finds.
+    fn is_near(&self, brick: &Brick, nearest: f32) -> bool {
+        Level::of(brick, nearest) == Level::Record
     }
 
     fn small(&self, gpu: &Gpu) -> u32 {

@@ -8,6 +8,7 @@ use crate::{
     Error, Gpu,
     kernel::storage,
     runs::{Run, is_plain},
+    shape::Draw,
 };
 use puncta_core::{Bounder, Brick, Camera, Content, Record, ScreenBound};
 use rayon::prelude::*;
@@ -52,21 +53,22 @@ impl Table {
         self.known.get(brick as usize).copied().unwrap_or_default()
     }
 
-    /// Finds the runs of bricks; spheres are at least as large as `radius_min` pixels.
+    /// Finds the runs of bricks.
     pub(crate) fn learn<R: Record>(
         &mut self,
         content: &Content<'_, R>,
-        (camera, radius_min): (&Camera, f32),
+        (camera, shape): (&Camera, &dyn Draw),
         bricks: &[u32],
     ) {
-        let bounder = Bounder::new(camera);
+        let (bounder, radius_min) = (Bounder::new(camera), shape.radius_min());
         let find = |&index: &u32| {
             let brick = grown(&content.bricks[index as usize], camera, radius_min);
             let bound = bounder.bound(&brick.bounds, brick.radius_max);
             if bound.is_empty() {
                 return None;
             }
-            Some((Run::of_brick(camera, (index, &brick), &bound), is_plain(camera, &brick)))
+            let is_plain = is_plain(camera, &brick) && !shape.is_near(&brick, bound.nearest);
+            Some((Run::of_brick(camera, (index, &brick), &bound), is_plain))
         };
         let unknown = |index: &&u32| self.known(**index) == Known::Unknown;
         let new: Vec<u32> = bricks.iter().filter(unknown).copied().collect();

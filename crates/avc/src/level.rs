@@ -1,45 +1,94 @@
-//! Levels: how finely a record was drawn, which depends on the brick that holds it.
+/*!
+Whose nearest point decides how finely a record is drawn.
 
-use puncta_core::{Bounder, Brick, Camera};
+All records of a brick are drawn as finely as the nearest point of the brick needs: so a level is one
+number a brick, and a GPU can have it at hand. But a brick that is nearer to the eye than its own size
+holds records whose distances differ by more than a factor of three, and one that holds the eye has no
+distance at all. The records of such bricks, which are few, have levels of their own.
+*/
+
+use crate::{Cloud, Glyph, Lens};
+use puncta_core::{Bounder, Brick, Camera, depth_below, nearest_depth};
 use std::collections::BTreeSet;
 
-/// Where each record's brick begins.
-#[derive(Debug)]
-pub(crate) struct Levels<'a> {
+/// By how much a ball is larger than what it holds: more than rounding.
+const AROUND: f64 = 1.00001;
+
+/// Whose nearest point decides how finely a record is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Level {
+    /// That of its brick, which begins at this view depth.
+    Brick(f32),
+    /// Its own.
+    Record,
+}
+
+impl Level {
+    /// That of the records of a brick, which begins at the view depth `nearest` of its
+    /// [`ScreenBound`](puncta_core::ScreenBound).
+    #[must_use]
+    pub fn of(brick: &Brick, nearest: f32) -> Self {
+        let size = (brick.bounds.max - brick.bounds.min).as_dvec3().length();
+        let size = size + 2.0 * f64::from(brick.radius_max);
+        // Written so that NaN is near.
+        if f64::from(nearest) * 2.0 >= size { Self::Brick(nearest) } else { Self::Record }
+    }
+}
+
+impl Lens<'_> {
+    /// The view depth by which a record is drawn: see [`Sight::nearest`](crate::Sight::nearest).
+    #[must_use]
+    #[inline]
+    pub fn nearest<G: Glyph>(&self, level: Level, cloud: &Cloud<'_, G>, index: usize) -> f32 {
+        match level {
+            Level::Brick(nearest) => nearest,
+            Level::Record => {
+                let (center, radius) = G::ball(cloud, index);
+                let center = self.camera.place(center.as_dvec3());
+                let depth = nearest_depth(center.z, f64::from(radius) * AROUND);
+                depth_below(depth.max(self.camera.near() * (1.0 - 1e-6)))
+            }
+        }
+    }
+}
+
+/// The levels of the records of a scene.
+#[derive(Clone, Debug)]
+pub struct Levels<'a> {
     bounder: Bounder<'a>,
     bricks: &'a [Brick],
     /// Where another brick is the first one that holds a record, and which; `None` if bricks ascend
     /// and share nothing.
     turns: Option<Vec<(u32, Option<u32>)>>,
-    /// For what is in no brick.
-    finest: f32,
 }
 
 impl<'a> Levels<'a> {
-    pub(crate) fn new(camera: &'a Camera, bricks: &'a [Brick]) -> Self {
+    /// Of a scene that is cut into these bricks.
+    #[must_use]
+    pub fn new(camera: &'a Camera, bricks: &'a [Brick]) -> Self {
         let is_sound = |brick: &Brick| brick.records.start <= brick.records.end;
         let ascends = bricks.iter().all(is_sound)
             && bricks.windows(2).all(|pair| pair[0].records.end <= pair[1].records.start);
         let turns = (!ascends).then(|| turns(bricks));
-        let finest = puncta_core::depth_below(camera.near());
-        Self { bounder: Bounder::new(camera), bricks, turns, finest }
+        Self { bounder: Bounder::new(camera), bricks, turns }
     }
 
-    /// The view depth at which the first brick that holds a record begins, as renderers have it.
-    pub(crate) fn nearest(&self, id: u32) -> f32 {
+    /// The level of a record: that of the first brick that holds it, its own if there is none.
+    #[must_use]
+    pub fn of(&self, record: u32) -> Level {
         let brick = match &self.turns {
             None => {
-                let at = self.bricks.partition_point(|brick| brick.records.end <= id);
-                self.bricks.get(at).filter(|brick| brick.records.start <= id)
+                let at = self.bricks.partition_point(|brick| brick.records.end <= record);
+                self.bricks.get(at).filter(|brick| brick.records.start <= record)
             }
             Some(turns) => {
-                let after = turns.partition_point(|(from, _)| *from <= id);
+                let after = turns.partition_point(|(from, _)| *from <= record);
                 let turn = after.checked_sub(1).and_then(|at| turns.get(at));
                 turn.and_then(|(_, brick)| self.bricks.get((*brick)? as usize))
             }
         };
-        brick.map_or(self.finest, |brick| {
-            self.bounder.bound(&brick.bounds, brick.radius_max).nearest
+        brick.map_or(Level::Record, |brick| {
+            Level::of(brick, self.bounder.bound(&brick.bounds, brick.radius_max).nearest)
         })
     }
 }
@@ -105,10 +154,11 @@ mod tests {
             prop_assert!(!is_sorted || levels.turns.is_none());
             for id in 0..60 {
                 let first = bricks.iter().find(|brick| brick.records.contains(&id));
-                let expected = first.map_or(levels.finest, |brick| {
-                    Bounder::new(&camera).bound(&brick.bounds, brick.radius_max).nearest
+                let expected = first.map_or(Level::Record, |brick| {
+                    let bound = Bounder::new(&camera).bound(&brick.bounds, brick.radius_max);
+                    Level::of(brick, bound.nearest)
                 });
-                prop_assert_eq!(levels.nearest(id), expected);
+                prop_assert_eq!(levels.of(id), expected);
             }
         }
     }
