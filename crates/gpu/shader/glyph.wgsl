@@ -1,8 +1,9 @@
 // Chunks of glyphs become pixels, by one workgroup each.
 //
-// Each lane looks at a record: if it is seen, how many triangles has its form? A scan of these numbers
-// gives each triangle a place, and the lanes go over the triangles together. A lane draws a triangle
-// itself if it is small. Others are left for `glyph_blocks.wgsl`, as many as there is room for.
+// Each lane looks at a record: if it is seen, how many triangles has its form? If no record has many, each
+// lane draws those of its own. Otherwise a scan of these numbers gives each triangle a place, and the lanes
+// go over all triangles together. A lane draws a triangle itself if it is small. Others are left for
+// `glyph_blocks.wgsl`, as many as there is room for.
 
 struct Chunk {
     run: u32,
@@ -24,8 +25,12 @@ const SLOTS: u32 = 0x3ffffffu;
 // By how much a ball is larger than what it holds: more than rounding.
 const AROUND: f32 = 1.00001;
 
-// The triangles of the records up to each lane.
+// The triangles of the records up to each lane, and of the record that has the most.
 var<workgroup> ends: array<u32, 64>;
+var<workgroup> most: atomic<u32>;
+
+// More triangles of a record than these are shared among lanes.
+const FEW: u32 = 12u;
 
 @compute @workgroup_size(64)
 fn draw_glyphs(
@@ -35,11 +40,11 @@ fn draw_glyphs(
     let chunk = chunks[group.x];
     let first = chunk.records & SLOTS;
     var count = 0u;
+    var form: Form;
     if lane <= (chunk.records >> 26u) {
-        count = triangles_of(runs[chunk.run], first + lane);
+        count = look(runs[chunk.run], first + lane, &form);
     }
-    scan(lane, count);
-    draw_triangles(chunk.run, first, lane);
+    draw_chunk(runs[chunk.run], first + lane, vec2(lane, count), form);
 }
 
 // As `draw_glyphs`, for the records that were seen in the picture before.
@@ -51,36 +56,29 @@ fn recall_glyphs(
     let chunk = chunks[group.x];
     let first = chunk.records & SLOTS;
     var count = 0u;
+    var form: Form;
     if lane <= (chunk.records >> 26u) {
-        let id = word(first + lane, WORDS - 1u);
+        let id = id_of(first + lane);
         if (seen[id >> 5u] >> (id & 31u) & 1u) != 0u {
             if round.pass_of_two == 0u {
                 atomicAdd(&large.recalled, 1u);
             }
-            count = triangles_of(runs[chunk.run], first + lane);
+            count = look(runs[chunk.run], first + lane, &form);
         }
     }
-    scan(lane, count);
-    draw_triangles(chunk.run, first, lane);
+    draw_chunk(runs[chunk.run], first + lane, vec2(lane, count), form);
 }
 
-fn scan(lane: u32, count: u32) {
-    ends[lane] = count;
-    workgroupBarrier();
-    for (var step = 1u; step < 64u; step *= 2u) {
-        var before = 0u;
-        if lane >= step {
-            before = ends[lane - step];
-        }
-        workgroupBarrier();
-        ends[lane] += before;
-        workgroupBarrier();
+// Draws the records of a chunk. That of this lane lies at a place and has so many triangles.
+fn draw_chunk(run: Run, own: u32, lane: vec2<u32>, form: Form) {
+    scan(lane.x, lane.y);
+    if atomicLoad(&most) <= FEW {
+        draw_own(run, own, form, lane.y);
+        return;
     }
-}
-
-fn draw_triangles(run: u32, first: u32, lane: u32) {
+    let first = own - lane.x;
     let total = ends[63];
-    for (var triangle = lane; triangle < total; triangle += 64u) {
+    for (var triangle = lane.x; triangle < total; triangle += 64u) {
         // The first record whose triangles end behind this one.
         var low_end = 0u;
         var high_end = 63u;
@@ -96,7 +94,62 @@ fn draw_triangles(run: u32, first: u32, lane: u32) {
         if low_end > 0u {
             start = ends[low_end - 1u];
         }
-        draw_triangle(runs[run], first + low_end, triangle - start);
+        let at = first + low_end;
+        let position = glyph_position(at);
+        let shared_form = glyph_form(at, sight_of(run, position));
+        let names = glyph_triangle(shared_form, triangle - start);
+        let offset = position - run.reference;
+        let a = corner(run, offset + glyph_vertex(shared_form, names.x));
+        let b = corner(run, offset + glyph_vertex(shared_form, names.y));
+        let c = corner(run, offset + glyph_vertex(shared_form, names.z));
+        draw_triangle(run, id_of(at), a, b, c);
+    }
+}
+
+// Draws the triangles of one record, whose vertices are placed once if they are as few as those of a box.
+fn draw_own(run: Run, at: u32, form: Form, count: u32) {
+    if count == 0u {
+        return;
+    }
+    let offset = glyph_position(at) - run.reference;
+    let id = id_of(at);
+    let vertices = glyph_size(form).x;
+    var corners: array<Corner, 8>;
+    for (var vertex = 0u; vertex < min(vertices, 8u); vertex++) {
+        corners[vertex] = corner(run, offset + glyph_vertex(form, vertex));
+    }
+    for (var triangle = 0u; triangle < count; triangle++) {
+        let names = glyph_triangle(form, triangle);
+        if vertices <= 8u {
+            draw_triangle(run, id, corners[names.x & 7u], corners[names.y & 7u], corners[names.z & 7u]);
+        } else {
+            let a = corner(run, offset + glyph_vertex(form, names.x));
+            let b = corner(run, offset + glyph_vertex(form, names.y));
+            let c = corner(run, offset + glyph_vertex(form, names.z));
+            draw_triangle(run, id, a, b, c);
+        }
+    }
+}
+
+fn id_of(at: u32) -> u32 {
+    return word(at, WORDS - 1u);
+}
+
+fn scan(lane: u32, count: u32) {
+    ends[lane] = count;
+    if lane == 0u {
+        atomicStore(&most, 0u);
+    }
+    workgroupBarrier();
+    atomicMax(&most, count);
+    for (var step = 1u; step < 64u; step *= 2u) {
+        var before = 0u;
+        if lane >= step {
+            before = ends[lane - step];
+        }
+        workgroupBarrier();
+        ends[lane] += before;
+        workgroupBarrier();
     }
 }
 
@@ -117,14 +170,16 @@ fn sight_of(run: Run, position: vec3<f32>) -> Sight {
     return sight;
 }
 
-// How many triangles of a record are to be drawn: none if it is hidden or covers no pixel's centre.
-fn triangles_of(run: Run, at: u32) -> u32 {
+// How many triangles of a record are to be drawn, and its form: none if it is hidden or covers no pixel's
+// centre.
+fn look(run: Run, at: u32, form: ptr<function, Form>) -> u32 {
     let ball = glyph_ball(at);
     let disc = place(run, vec4(ball.xyz, ball.w * AROUND));
     if low(disc.columns) > high(disc.columns) || is_hidden(disc) {
         return 0u;
     }
-    return glyph_size(glyph_form(at, sight_of(run, glyph_position(at)))).y;
+    *form = glyph_form(at, sight_of(run, glyph_position(at)));
+    return glyph_size(*form).y;
 }
 
 fn is_hidden(disc: Disc) -> bool {
@@ -161,14 +216,8 @@ fn corner(run: Run, offset: vec3<f32>) -> Corner {
     return Corner(local, depth, run.fraction + vec2(aside.x, -aside.y));
 }
 
-fn draw_triangle(run: Run, at: u32, triangle: u32) {
-    let position = glyph_position(at);
-    let form = glyph_form(at, sight_of(run, position));
-    let names = glyph_triangle(form, triangle);
-    let offset = position - run.reference;
-    let a = corner(run, offset + glyph_vertex(form, names.x));
-    let b = corner(run, offset + glyph_vertex(form, names.y));
-    let c = corner(run, offset + glyph_vertex(form, names.z));
+// Draws a triangle of a record.
+fn draw_triangle(run: Run, id: u32, a: Corner, b: Corner, c: Corner) {
     let ab = b.at - a.at;
     let ac = c.at - a.at;
     // In a picture, where rows run downwards, what is seen from in front turns the other way round.
@@ -199,7 +248,7 @@ fn draw_triangle(run: Run, at: u32, triangle: u32) {
     facet.depth = a.depth;
     facet.nearest = max(min(a.depth, min(b.depth, c.depth)), camera.near);
     facet.farthest = max(a.depth, max(b.depth, c.depth));
-    facet.id = word(at, WORDS - 1u);
+    facet.id = id;
     facet.whole = pack(run.whole.x, run.whole.y);
     facet.columns = pack(first.x, last.x);
     facet.rows = pack(first.y, last.y);

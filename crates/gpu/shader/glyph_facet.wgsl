@@ -41,41 +41,75 @@ const BLOCK: u32 = 32u;
 // By how much edges are wider, in pixels: about what rounding may move them by.
 const WIDER: f32 = 2e-5;
 
-// Twice the area of the triangle with the origin, of exactly the opposite sign from `b` to `a`.
-fn side(a: vec2<f32>, b: vec2<f32>) -> f32 {
-    let is_lower = a.x < b.x || (a.x == b.x && a.y < b.y);
-    let low = select(b, a, is_lower);
-    let high = select(a, b, is_lower);
-    let area = low.x * high.y - low.y * high.x;
-    return select(-area, area, is_lower);
+// An edge between its lower and its higher corner, so that both of its triangles compute the same.
+struct Edge {
+    low: vec2<f32>,
+    high: vec2<f32>,
+    // 1 if it leads from the low corner to the high one, -1 otherwise.
+    sign: f32,
+    // Twice the area that a pixel may lie outside.
+    outside: f32,
 }
+
+fn edge(a: vec2<f32>, b: vec2<f32>) -> Edge {
+    let is_lower = a.x < b.x || (a.x == b.x && a.y < b.y);
+    let outside = -WIDER * length(b - a);
+    return Edge(select(b, a, is_lower), select(a, b, is_lower), select(-1.0, 1.0, is_lower), outside);
+}
+
+// Whether a pixel lies on the inner side of an edge.
+fn is_inside(edge: Edge, pixel: vec2<f32>) -> bool {
+    let low = edge.low - pixel;
+    let high = edge.high - pixel;
+    return edge.sign * (low.x * high.y - low.y * high.x) >= edge.outside;
+}
+
+// Where an edge may let a row begin and end: some pixels more than it does, as rounding may move it.
+fn reach(edge: Edge, row: f32) -> vec2<f32> {
+    let rise = edge.high.y - edge.low.y;
+    let slope = (edge.high.x - edge.low.x) / rise;
+    let at = edge.low.x + slope * (row - edge.low.y);
+    let slack = 1.0 + abs(slope) * 1e-3;
+    if edge.sign * rise < 0.0 {
+        return vec2(at - slack, FAR);
+    }
+    if edge.sign * rise > 0.0 {
+        return vec2(-FAR, at + slack);
+    }
+    return vec2(-FAR, FAR);
+}
+
+// Beyond all pixels.
+const FAR: f32 = 65536.0;
 
 // Draws the pixels of a rectangle, every `step`-th of them from `first` on.
 fn draw_rectangle(facet: Facet, first: vec2<u32>, last: vec2<u32>, step: u32) {
     let whole = whole_of(facet.whole);
-    let lengths = vec3(
-        length(facet.b - facet.a),
-        length(facet.c - facet.b),
-        length(facet.a - facet.c),
-    );
-    let outside = -WIDER * lengths;
+    let ab = edge(facet.a, facet.b);
+    let bc = edge(facet.b, facet.c);
+    let ca = edge(facet.c, facet.a);
     for (var row = first.y; row <= last.y; row += step) {
-        for (var column = first.x; column <= last.x; column += step) {
-            let pixel = vec2<f32>(vec2(i32(column), i32(row)) - whole);
-            let a = facet.a - pixel;
-            let b = facet.b - pixel;
-            let c = facet.c - pixel;
-            if !(side(a, b) >= outside.x && side(b, c) >= outside.y && side(c, a) >= outside.z) {
+        let y = f32(i32(row) - whole.y);
+        let a = reach(ab, y);
+        let b = reach(bc, y);
+        let c = reach(ca, y);
+        let left = whole.x + i32(ceil(clamp(max(a.x, max(b.x, c.x)), -FAR, FAR)));
+        let right = whole.x + i32(floor(clamp(min(a.y, min(b.y, c.y)), -FAR, FAR)));
+        let skipped = u32(max(left - i32(first.x), 0)) + step - 1u;
+        let end = min(i32(last.x), right);
+        for (var at = i32(first.x + skipped / step * step); at <= end; at += i32(step)) {
+            let pixel = vec2(f32(at - whole.x), y);
+            if !(is_inside(ab, pixel) && is_inside(bc, pixel) && is_inside(ca, pixel)) {
                 continue;
             }
-            let change = -dot(facet.slope, a);
+            let change = dot(facet.slope, pixel - facet.a);
             var depth = facet.depth + change;
             if camera.is_perspective != 0u {
                 depth = facet.depth / (1.0 + change);
             }
             // Of a facet that is seen edge-on, the plane says nothing.
             depth = clamp(depth, facet.nearest, facet.farthest);
-            let place = row * camera.width + column;
+            let place = row * camera.width + u32(at);
             if may_show(place, depth) {
                 show(place, depth, facet.id);
             }

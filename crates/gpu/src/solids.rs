@@ -277,7 +277,8 @@ impl<G: Glyph> Draw for Solids<G> {
 
     fn small(&self, gpu: &Gpu) -> u32 {
         let is_cpu = gpu.device.adapter_info().device_type == wgpu::DeviceType::Cpu;
-        if is_cpu { 1024 } else { 128 }
+        // One lane at a time or all at once: what is large for a lane differs.
+        if is_cpu { 1 << 16 } else { 128 }
     }
 
     fn scratch(&self, gpu: &Gpu, pool: &mut Pool, _records: u32) -> Result<wgpu::Buffer, Error> {
