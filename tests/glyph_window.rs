@@ -11,7 +11,10 @@ mod screen;
 use screen::{Running, Screen, covered, differing, path_of, pixels};
 use std::process::Command;
 
-const SIZE: [&str; 6] = ["--size", "600x400", "--background", "transparent", "--supersample", "1"];
+const SIZE: [&str; 4] = ["--size", "600x400", "--background", "transparent"];
+
+/// No finer picture when the camera rests.
+const PLAIN: [&str; 2] = ["--supersample", "1"];
 
 /// Few records, and a place to look at them from that does not depend on the size of the window.
 const BLOCKS: [&str; 7] = ["blocks", "--cells", "24", "--eye", "-20,-40,50", "--target", "12,12,5"];
@@ -31,7 +34,7 @@ fn screenshot(screen: &Screen, tool: &[&str], arguments: &[&str]) -> Vec<[u8; 4]
 fn a_window_shows_what_is_written_without_one() {
     let Some(screen) = Screen::new() else { return };
     let [cpu, gpu] = ["cpu", "gpu"].map(|backend| {
-        let shown = screenshot(&screen, &BLOCKS, &["--backend", backend]);
+        let shown = screenshot(&screen, &BLOCKS, &["--backend", backend, "--supersample", "1"]);
         let height = (shown.len() / 600).to_string();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("written.png");
@@ -53,8 +56,8 @@ fn a_window_shows_what_is_written_without_one() {
 #[test]
 fn an_orbit_changes_the_picture() {
     let Some(screen) = Screen::new() else { return };
-    let still = screenshot(&screen, &FLOW, &[]);
-    let turned = screenshot(&screen, &FLOW, &["--orbit", "6,-3"]);
+    let still = screenshot(&screen, &FLOW, &PLAIN);
+    let turned = screenshot(&screen, &FLOW, &["--supersample", "1", "--orbit", "6,-3"]);
     assert!(covered(&still) > still.len() / 100, "{}", covered(&still));
     assert!(differing(&still, &turned) > covered(&still) / 4);
 }
@@ -62,7 +65,7 @@ fn an_orbit_changes_the_picture() {
 #[test]
 fn a_rest_makes_the_picture_finer() {
     let Some(screen) = Screen::new() else { return };
-    let plain = screenshot(&screen, &FLOW, &[]);
+    let plain = screenshot(&screen, &FLOW, &PLAIN);
     let fine = screenshot(&screen, &FLOW, &["--supersample", "3"]);
     let partly = |pixels: &[[u8; 4]]| pixels.iter().any(|pixel| !matches!(pixel[3], 0 | 255));
     assert!(!partly(&plain) && partly(&fine));
@@ -74,7 +77,7 @@ fn a_drag_turns_a_wheel_zooms_and_a_click_picks() {
     if screen.input("version").is_none() {
         return;
     }
-    let arguments = [&BLOCKS[1..], &SIZE, &["--window", "--log"]].concat();
+    let arguments = [&BLOCKS[1..], &SIZE, &PLAIN, &["--window", "--log"]].concat();
     let mut window = screen.run("blocks", &arguments);
     let eye = |line: &str| line.split_once("eye=").map(|(_, rest)| rest.to_owned());
     let count = |line: &str| {

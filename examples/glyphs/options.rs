@@ -11,7 +11,7 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Drawing")]
 pub(crate) struct Drawing {
-    /// Columns and rows of the picture
+    /// Columns and rows of the picture, or of the window
     #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = size)]
     pub(crate) size: (u32, u32),
 
@@ -64,7 +64,7 @@ pub(crate) struct Drawing {
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Window {
     /// Show it in a window instead of writing an image: drag to turn (left) and move (right), scroll to
-    /// zoom, click to pick; the only light is at the camera and above
+    /// zoom, click to pick; there are no shadows
     #[arg(long, conflicts_with_all = ["out", "sky"])]
     pub(crate) window: bool,
 

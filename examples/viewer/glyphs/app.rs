@@ -20,6 +20,7 @@ use egui::{
     Align2, Context, FontId, Key, Margin, Painter, Rect, Response, RichText, Sense, TextureHandle,
     TextureOptions, Ui,
 };
+use glam::DVec2;
 use puncta::{Bricks, Glyph, Live, Progress, Renderer, Scene, io::png};
 use std::{
     fmt::Display,
@@ -47,6 +48,8 @@ pub(crate) struct App<G: Glyph, B> {
     /// Whether the user is holding the camera.
     is_held: bool,
     anchor: Anchor,
+    /// The pixel of the image that was clicked, until it is known what is seen there.
+    clicked: Option<DVec2>,
     pick: Option<Pick>,
     shown: Option<Shown>,
     texture: Option<TextureHandle>,
@@ -84,6 +87,7 @@ impl<G: Glyph + 'static, B: Bricks + Send + Sync + 'static> App<G, B> {
             asking: Asking::default(),
             is_held: false,
             anchor: Anchor::default(),
+            clicked: None,
             pick: None,
             shown: None,
             texture: None,
@@ -174,6 +178,7 @@ impl<G: Glyph + 'static, B: Bricks + Send + Sync + 'static> App<G, B> {
         let response = ui.interact(rect, egui::Id::unique("picture"), Sense::click_and_drag());
         let frame = self.paint(&painter, rect);
         self.point(&response, frame);
+        self.pick();
         let pressed = |key| ui.ctx().input(|input| input.key_pressed(key));
         if pressed(Key::Escape) {
             self.pick = None;
@@ -211,11 +216,21 @@ impl<G: Glyph + 'static, B: Bricks + Send + Sync + 'static> App<G, B> {
                 self.camera.center(point);
             }
         } else if response.clicked() {
-            let what = (self.scene.as_ref(), &self.paint);
-            self.pick = shown.and_then(|shown| Pick::at(what, shown, pixel));
-            let picked = self.pick.map_or_else(|| "nothing".to_owned(), |pick| pick.to_string());
-            self.log(&format!("picked {picked}"));
+            self.clicked = Some(pixel);
         }
+    }
+
+    /// Picks what was clicked. In a picture that is being drawn something may still come before what is
+    /// seen; a picture that was overtaken stays as it is.
+    fn pick(&mut self) {
+        let Some(shown) = &self.shown else { return };
+        if self.asking.view.as_ref() == Some(&shown.view) && !self.progress.settled() {
+            return;
+        }
+        let Some(pixel) = self.clicked.take() else { return };
+        self.pick = Pick::at((&self.scene, &self.paint), shown, pixel);
+        let picked = self.pick.map_or_else(|| "nothing".to_owned(), |pick| pick.to_string());
+        self.log(&format!("picked {picked}"));
     }
 }
 
