@@ -227,3 +227,64 @@ fn surfaces_of_worlds_look_as_all_of_their_blocks() {
     println!("{other} pixels differ");
     assert!(other <= 2, "{other} of 180000 pixels");
 }
+
+/// Records that are changed where they are are brought again with their segments, and no others; the
+/// picture is that of a scene that was like that from the start.
+#[test]
+fn ranges_can_be_changed() {
+    let Some(gpu) = gpu::gpu() else { return };
+    let mut random = Pcg64Mcg::seed_from_u64(51);
+    let mut scene = Scene::new(cloud::<Cuboid>(&mut random, 20_000, 1.0, [0.01, 0.05]));
+    let mut grid = Grid::sort_scene(&mut scene, &GridConfig::longest_side(9)).unwrap();
+    let view = View::look_at(DVec3::new(3.0, 1.0, 2.0), DVec3::ZERO, DVec3::Z).unwrap();
+    let view = view.with_size(160, 120).unwrap();
+    let mut pipeline = draws::<Cuboid>(gpu);
+    let first = pipeline.render(&scene, &grid, &view).unwrap();
+    let brought = pipeline.renderer().brought_bytes();
+    // 24 bytes of a cuboid and its id, 20 segments.
+    assert_eq!(brought, 20 * 1024 * 28);
+    let seen = first.visible_records()[100] as usize;
+    let range = seen..(seen + 50).min(scene.records.len());
+    for cuboid in scene.records.edit(range.clone()) {
+        cuboid.extent = cuboid.extent.map(|side| side * 6.0);
+    }
+    grid.refit(&scene.records, range).unwrap();
+    let changed = pipeline.render(&scene, &grid, &view).unwrap();
+    assert!(bits(&changed) != bits(&first));
+    let again = pipeline.renderer().brought_bytes() - brought;
+    assert!(again == 28 * 1024 || again == 2 * 28 * 1024, "{again} bytes");
+    let mut fresh = draws::<Cuboid>(gpu);
+    assert!(bits(&fresh.render(&scene, &grid, &view).unwrap()) == bits(&changed));
+    assert_eq!(differing(&changed, &on_cpu(&scene, &grid, &view)), 0);
+    // A grid that was measured again skips as one that is made anew.
+    assert!(grid.refit(&scene.records, 0..usize::MAX).is_ok());
+    scene.records.edit(7..8)[0].center[1] = f32::NAN;
+    let error = grid.refit(&scene.records, 0..100).unwrap_err();
+    assert!(error.to_string().starts_with("record 7 lies at"), "{error}");
+}
+
+/// What all glyphs share changes the next picture, and nothing is brought for it.
+#[test]
+fn styles_can_be_changed() {
+    let Some(gpu) = gpu::gpu() else { return };
+    let mut random = Pcg64Mcg::seed_from_u64(52);
+    let mut scene = Scene::new(cloud::<Node>(&mut random, 3000, 1.0, [0.01, 0.5]));
+    let view = View::look_at(DVec3::new(3.0, 1.0, 2.0), DVec3::ZERO, DVec3::Z).unwrap();
+    let view = view.with_size(160, 120).unwrap();
+    let held = Node::hold(&mut scene, 8);
+    let mut pipeline = draws::<Node>(gpu);
+    let first = pipeline.render(&scene, &held, &view).unwrap();
+    let brought = pipeline.renderer().brought_bytes();
+    pipeline.renderer_mut().glyphs_mut().style.selected = 3;
+    pipeline.renderer_mut().glyphs_mut().style.selection = 0;
+    let glyphs = pipeline.renderer().glyphs().clone();
+    let second = pipeline.render(&scene, &held, &view).unwrap();
+    assert_eq!(pipeline.renderer().brought_bytes(), brought);
+    let is_hidden = |picture: &Picture| {
+        let nodes = picture.visible_records().into_iter();
+        nodes.filter(|&node| scene.records[node as usize].trajectory == 3).count()
+    };
+    assert!(is_hidden(&first) > 20 && is_hidden(&second) == 0);
+    let mut cpu = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::of(glyphs));
+    assert!(differing(&second, &cpu.render(&scene, &held, &view).unwrap()) <= 1);
+}

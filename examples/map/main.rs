@@ -8,6 +8,7 @@ mod footprint;
 mod geo;
 #[path = "../glyphs/mod.rs"]
 mod glyphs;
+mod lot;
 mod town;
 
 use anyhow::{Context, Result, ensure};

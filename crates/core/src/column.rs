@@ -9,8 +9,9 @@ with [`std::borrow::Cow`].
 */
 
 use std::{
+    collections::VecDeque,
     fmt,
-    ops::Deref,
+    ops::{Deref, Range},
     slice,
     sync::{
         Arc,
@@ -47,6 +48,26 @@ use std::{
 pub struct Column<T> {
     values: Storage<T>,
     version: u64,
+    edits: Edits,
+}
+
+/// The ranges that were changed last, so that copies need not be made anew.
+#[derive(Clone, Debug, Default)]
+struct Edits {
+    /// The version before the first of them.
+    since: u64,
+    /// The version after each, and which values it changed.
+    ranges: VecDeque<(u64, Range<usize>)>,
+}
+
+/// How many ranges are remembered.
+const EDITS_MAX: usize = 256;
+
+impl Edits {
+    /// None, from this version on.
+    const fn since(version: u64) -> Self {
+        Self { since: version, ranges: VecDeque::new() }
+    }
 }
 
 /// The versions that were given out.
@@ -66,7 +87,7 @@ impl<T> Column<T> {
     /// A column without values.
     #[must_use]
     pub const fn new() -> Self {
-        Self { values: Storage::Owned(Vec::new()), version: 0 }
+        Self { values: Storage::Owned(Vec::new()), version: 0, edits: Edits::since(0) }
     }
 
     /// The values that `holder` lends out. They are not copied; `holder` is dropped with the last
@@ -101,7 +122,13 @@ impl<T> Column<T> {
     /// ```
     #[must_use]
     pub fn shared(holder: impl AsRef<[T]> + Send + Sync + 'static) -> Self {
-        Self { values: Storage::Shared(Arc::new(holder)), version: next_version() }
+        Self::of(Storage::Shared(Arc::new(holder)))
+    }
+
+    /// A column of values that are new.
+    fn of(values: Storage<T>) -> Self {
+        let version = next_version();
+        Self { values, version, edits: Edits::since(version) }
     }
 
     /// Whether somebody else holds the values, so that changing them copies them.
@@ -118,6 +145,19 @@ impl<T> Column<T> {
     #[must_use]
     pub const fn version(&self) -> u64 {
         self.version
+    }
+
+    /// The ranges of values that may have changed since the column had a version; `None` if all may
+    /// have, or if that is too long ago.
+    #[must_use]
+    pub fn changes_since(&self, version: u64) -> Option<Vec<Range<usize>>> {
+        let Edits { since, ranges } = &self.edits;
+        let first = if version == *since {
+            0
+        } else {
+            1 + ranges.iter().position(|(after, _)| *after == version)?
+        };
+        Some(ranges.range(first..).map(|(_, range)| range.clone()).collect())
     }
 
     /// The values. For a shared column this is a virtual call.
@@ -139,6 +179,43 @@ impl<T: Clone> Column<T> {
     #[inline]
     pub fn to_mut(&mut self) -> &mut Vec<T> {
         self.version = next_version();
+        self.edits = Edits::since(self.version);
+        self.owned()
+    }
+
+    /// The values of a range, as far as they are there, to change them where they are. What was made of
+    /// the others, such as a copy on a GPU, can be kept: see [`Column::changes_since`]. A shared column
+    /// copies all values first.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use puncta_core::Column;
+    ///
+    /// let mut column = Column::from(vec![0; 1000]);
+    /// let before = column.version();
+    /// column.edit(10..20).fill(1);
+    /// column.edit(990..2000).fill(2);
+    /// assert_eq!(column.changes_since(before), Some(vec![10..20, 990..1000]));
+    /// column.to_mut();
+    /// assert_eq!(column.changes_since(before), None);
+    /// ```
+    pub fn edit(&mut self, range: Range<usize>) -> &mut [T] {
+        let count = self.as_slice().len();
+        let end = range.end.min(count);
+        let range = range.start.min(end)..end;
+        self.version = next_version();
+        let Edits { since, ranges } = &mut self.edits;
+        ranges.push_back((self.version, range.clone()));
+        if ranges.len() > EDITS_MAX
+            && let Some((version, _)) = ranges.pop_front()
+        {
+            *since = version;
+        }
+        &mut self.owned()[range]
+    }
+
+    fn owned(&mut self) -> &mut Vec<T> {
         if let Storage::Shared(holder) = &self.values {
             self.values = Storage::Owned((**holder).as_ref().to_vec());
         }
@@ -152,6 +229,7 @@ impl<T: Clone> Column<T> {
     /// of.
     pub fn clear(&mut self) {
         self.version = next_version();
+        self.edits = Edits::since(self.version);
         match &mut self.values {
             Storage::Owned(values) => values.clear(),
             Storage::Shared(_) => *self = Self::new(),
@@ -205,7 +283,7 @@ impl<T: Clone> Clone for Column<T> {
             Storage::Owned(values) => Storage::Owned(values.clone()),
             Storage::Shared(holder) => Storage::Shared(Arc::clone(holder)),
         };
-        Self { values, version: self.version }
+        Self { values, version: self.version, edits: self.edits.clone() }
     }
 }
 
@@ -217,7 +295,7 @@ impl<T: fmt::Debug> fmt::Debug for Column<T> {
 
 impl<T> From<Vec<T>> for Column<T> {
     fn from(values: Vec<T>) -> Self {
-        Self { values: Storage::Owned(values), version: next_version() }
+        Self::of(Storage::Owned(values))
     }
 }
 
@@ -366,6 +444,33 @@ mod tests {
         assert_eq!(changed, [7, 8, 6]);
         assert_eq!(column.as_ptr(), held.as_ptr());
         assert_eq!(*held, [4, 5, 6]);
+    }
+
+    #[test]
+    fn edits_are_told_until_they_are_too_many() {
+        let mut column = Column::from(vec![0_u8; 9]);
+        let start = column.version();
+        assert_eq!(column.changes_since(start), Some(vec![]));
+        let mut versions = vec![start];
+        for i in 0..EDITS_MAX {
+            column.edit(i % 9..9)[0] += 1;
+            versions.push(column.version());
+        }
+        assert_eq!(column.changes_since(start).map(|ranges| ranges.len()), Some(EDITS_MAX));
+        assert_eq!(
+            column.changes_since(versions[EDITS_MAX - 1]),
+            Some(vec![(EDITS_MAX - 1) % 9..9])
+        );
+        let copy = column.clone();
+        column.edit(3..3);
+        assert_eq!(column.changes_since(start), None);
+        assert_eq!(column.changes_since(versions[1]).map(|ranges| ranges.len()), Some(EDITS_MAX));
+        assert_eq!(column.changes_since(u64::MAX), None);
+        // Of what another column has become since, nothing is known.
+        assert_eq!(copy.changes_since(column.version()), None);
+        let reversed = std::ops::Range { start: 7, end: 2 };
+        assert!(column.edit(reversed).is_empty());
+        assert!(column.edit(100..200).is_empty());
     }
 
     #[test]

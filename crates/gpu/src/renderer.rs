@@ -306,7 +306,7 @@ impl<S> GpuRenderer<S> {
         let frame = self.frame.as_mut().ok_or(puncta_core::Error::NotBegun)?;
         content.validate(bricks)?;
         frame.prepare(&self.gpu, content)?;
-        if self.store.as_ref().is_none_or(|store| !store.is_of(content.scene)) {
+        if !self.store.as_mut().is_some_and(|store| store.follow(content.scene)) {
             self.store = None;
             let room = (self.shape.layout(), self.config.record_bytes);
             self.store = Some(Store::new(&self.gpu, content.scene, room)?);

@@ -20,6 +20,8 @@ struct Slot {
     after: u32,
     /// The round that used it last; it is not taken away in the same round.
     round: u64,
+    /// Whether the segment has changed since it was brought.
+    is_stale: bool,
 }
 
 /// Segments and slots.
@@ -55,19 +57,38 @@ impl Residency {
         }
     }
 
-    /// Where a segment is, if it is there; this does not count as use.
+    /// Where a segment is, if it is there as it is now; this does not count as use.
     pub(crate) fn find(&self, segment: u32) -> Option<u32> {
+        self.slot(segment).filter(|&slot| !self.slots[slot as usize].is_stale)
+    }
+
+    /// The slot of a segment, whether or not it has changed since.
+    fn slot(&self, segment: u32) -> Option<u32> {
         self.slot_of.get(segment as usize).copied().filter(|&slot| slot != NONE)
+    }
+
+    /// A segment has changed: it must be brought again before it is used.
+    pub(crate) fn spoil(&mut self, segment: u32) {
+        if let Some(slot) = self.slot(segment) {
+            self.slots[slot as usize].is_stale = true;
+        }
     }
 
     /// Makes sure that a segment has a slot during a round.
     pub(crate) fn take(&mut self, segment: u32, round: u64) -> Place {
-        if let Some(slot) = self.find(segment) {
+        if let Some(slot) = self.slot(segment) {
             self.renew(slot, round);
-            return Place::Resident(slot);
+            let is_stale = std::mem::take(&mut self.slots[slot as usize].is_stale);
+            return if is_stale { Place::Missing(slot) } else { Place::Resident(slot) };
         }
         let slot = if self.slots.len() < self.count {
-            self.slots.push(Slot { segment: NONE, before: NONE, after: NONE, round });
+            self.slots.push(Slot {
+                segment: NONE,
+                before: NONE,
+                after: NONE,
+                round,
+                is_stale: false,
+            });
             let slot = u32::try_from(self.slots.len() - 1).unwrap_or(NONE);
             self.link(slot);
             slot
@@ -78,6 +99,7 @@ impl Residency {
                 _ => return Place::Full,
             }
         };
+        self.slots[slot as usize].is_stale = false;
         let before = std::mem::replace(&mut self.slots[slot as usize].segment, segment);
         if let Some(before) = self.slot_of.get_mut(before as usize) {
             *before = NONE;
@@ -128,6 +150,23 @@ impl Residency {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn what_has_changed_is_brought_again_to_its_slot() {
+        let mut residency = Residency::new(3, 2);
+        let Place::Missing(slot) = residency.take(1, 1) else { panic!() };
+        residency.spoil(1);
+        residency.spoil(2);
+        assert_eq!(residency.find(1), None);
+        assert_eq!(residency.take(1, 1), Place::Missing(slot));
+        assert_eq!(residency.take(1, 1), Place::Resident(slot));
+        assert_eq!(residency.find(1), Some(slot));
+        // A slot that is given to another segment is not stale.
+        residency.spoil(1);
+        assert!(matches!(residency.take(0, 2), Place::Missing(_)));
+        assert_eq!(residency.take(2, 3), Place::Missing(slot));
+        assert_eq!(residency.take(2, 3), Place::Resident(slot));
+    }
 
     proptest! {
         /// It does what a list does that is searched from one end to the other.

@@ -157,8 +157,26 @@ impl Store {
         })
     }
 
-    pub(crate) fn is_of<R: Record>(&self, scene: &Scene<R>) -> bool {
-        self.key == key(scene)
+    /// Whether this is a copy of the scene; records that were changed where they are will be brought
+    /// again.
+    pub(crate) fn follow<R: Record>(&mut self, scene: &Scene<R>) -> bool {
+        let (known, now) = (self.key, key(scene));
+        if known == now {
+            return true;
+        }
+        let is_same = (known.1, known.2) == (now.1, now.2);
+        let changes = is_same.then(|| scene.records.changes_since(known.0)).flatten();
+        let Some(changes) = changes else { return false };
+        for range in changes.into_iter().filter(|range| !range.is_empty()) {
+            // Records are repeated around the segments beside theirs.
+            let first = range.start.saturating_sub(self.layout.after as usize);
+            let last = range.end - 1 + self.layout.before as usize;
+            for segment in first / SEGMENT as usize..=last / SEGMENT as usize {
+                self.residency.spoil(u32::try_from(segment).unwrap_or(u32::MAX));
+            }
+        }
+        self.key = now;
+        true
     }
 
     /// The bytes of all pages that were made.

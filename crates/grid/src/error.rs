@@ -38,3 +38,14 @@ pub enum Error {
     #[error(transparent)]
     Scene(#[from] puncta_core::Error),
 }
+
+impl Error {
+    /// The same of records that start at an index.
+    pub(crate) fn after(self, start: usize) -> Self {
+        match self {
+            Self::Position { index, position } => Self::Position { index: start + index, position },
+            Self::Radius { index, radius } => Self::Radius { index: start + index, radius },
+            other => other,
+        }
+    }
+}

@@ -54,6 +54,7 @@ use crate::{
 };
 use puncta_core::{Block, Brick, Bricks, MAX_RECORDS, NO_RECORD, Record, Scene};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// How to lay the grid.
 ///
@@ -214,6 +215,41 @@ impl Grid {
         let blocks =
             bricks.par_chunks(Block::RUN).enumerate().with_min_len(64).map(block).collect();
         Self { cells, layout, bricks, blocks, codes, colors }
+    }
+
+    /// Measures the bricks again that hold any of these records, which were changed where they are
+    /// ([`Column::edit`](puncta_core::Column::edit)). Records stay in their bricks, even if they have
+    /// moved out of their cells: what has moved far is drawn right, but is worse to skip.
+    ///
+    /// # Errors
+    ///
+    /// When a position or radius of these bricks is not finite, or a radius is negative. The grid is as
+    /// it was then, and must not be used for these records.
+    pub fn refit<R: Record>(&mut self, records: &[R], range: Range<usize>) -> Result<(), Error> {
+        let is_in = |brick: &Brick| {
+            (brick.records.start as usize) < range.end && range.start < brick.records.end as usize
+        };
+        let first = self.bricks.partition_point(|brick| brick.records.end as usize <= range.start);
+        let count = self.bricks[first..].iter().take_while(|brick| is_in(brick)).count();
+        let sides = self.cells.sides();
+        let measured: Result<Vec<Brick>, Error> = self.bricks[first..first + count]
+            .iter()
+            .map(|brick| {
+                let (start, end) = (brick.records.start as usize, brick.records.end as usize);
+                let members = records.get(start..end).unwrap_or_default();
+                census::bounds(members).map_err(|error| error.after(start))?;
+                Ok(measure::measure(members, brick.records.start, sides))
+            })
+            .collect();
+        for (brick, measured) in self.bricks[first..].iter_mut().zip(measured?) {
+            *brick = Brick { records: brick.records.clone(), ..measured };
+        }
+        let blocks = first / Block::RUN..(first + count).div_ceil(Block::RUN);
+        for block in self.blocks.get_mut(blocks).unwrap_or_default() {
+            let run = block.bricks.start as usize..block.bricks.end as usize;
+            *block = Block::of_run(block.bricks.start, &self.bricks[run]);
+        }
+        Ok(())
     }
 
     /// The cells of the grid.
