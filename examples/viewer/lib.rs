@@ -13,6 +13,8 @@
 //!   leaves them where the window finds them (`drawing.rs`).
 //! * The **worker** does what takes long and is not drawing: reading, sorting, waking up a GPU
 //!   (`worker.rs`).
+//!
+//! The tools that draw glyphs open windows of their own with `--window`: see [`glyphs`].
 
 mod app;
 mod asking;
