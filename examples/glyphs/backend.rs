@@ -1,14 +1,15 @@
 //! What draws: the one place that knows of the CPU and of GPUs.
 
 use super::options::{BackendKind, Drawing};
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use puncta::{
-    Amount, Content, CpuRenderer, Glyph, Glyphs, Picture, Renderer, View, core::VisibleBrick,
+    Amount, Content, CpuRenderer, Glyph, Glyphs, Gpu, GpuConfig, GpuRenderer, Picture, Renderer,
+    View, core::VisibleBrick, gpu::Extent,
 };
 
 /// A renderer of either kind.
 pub(crate) struct Backend<G: Glyph> {
-    renderer: Box<dyn Renderer<G, Error = anyhow::Error>>,
+    renderer: Box<dyn Renderer<G, Error = anyhow::Error> + Send>,
     /// What it is, for people.
     pub(crate) name: String,
 }
@@ -29,19 +30,11 @@ impl<G: Glyph + 'static> Backend<G> {
     }
 }
 
-#[cfg(feature = "gpu")]
 fn gpu<G: Glyph + 'static>(options: &Drawing, glyphs: &Glyphs<G>) -> Result<Backend<G>> {
-    use anyhow::Context;
-    use puncta::{Gpu, GpuConfig, GpuRenderer, gpu::Extent};
     let adapter = options.adapter.as_deref();
     let gpu = Gpu::new(adapter, Extent::Full).context("--backend cpu needs no GPU")?;
     let renderer = GpuRenderer::of(&gpu, glyphs.clone(), GpuConfig::default())?;
     Ok(Backend { name: gpu.name().to_owned(), renderer: Box::new(AnyError(renderer)) })
-}
-
-#[cfg(not(feature = "gpu"))]
-fn gpu<G: Glyph + 'static>(_: &Drawing, _: &Glyphs<G>) -> Result<Backend<G>> {
-    bail!("this build draws on the CPU only; build it with the feature gpu")
 }
 
 impl<G: Glyph> Renderer<G> for Backend<G> {
@@ -53,6 +46,14 @@ impl<G: Glyph> Renderer<G> for Backend<G> {
 
     fn draw(&mut self, content: &Content<'_, G>, bricks: &[VisibleBrick]) -> Result<Amount> {
         self.renderer.draw(content, bricks)
+    }
+
+    fn recall(&mut self, content: &Content<'_, G>, bricks: &[VisibleBrick]) -> Result<u64> {
+        self.renderer.recall(content, bricks)
+    }
+
+    fn forget(&mut self) {
+        self.renderer.forget();
     }
 
     fn survey(
@@ -85,6 +86,14 @@ where
 
     fn draw(&mut self, content: &Content<'_, G>, bricks: &[VisibleBrick]) -> Result<Amount> {
         Ok(self.0.draw(content, bricks)?)
+    }
+
+    fn recall(&mut self, content: &Content<'_, G>, bricks: &[VisibleBrick]) -> Result<u64> {
+        Ok(self.0.recall(content, bricks)?)
+    }
+
+    fn forget(&mut self) {
+        self.0.forget();
     }
 
     fn survey(

@@ -3,7 +3,8 @@
 use super::options::Drawing;
 use anyhow::{Context, Result};
 use glam::DVec3;
-use puncta::{Background, Bounds, Coloring, Glyph, Glyphs, Scene, View, cpu::Each};
+use puncta::{Background, Bounds, Glyph, Glyphs, Scene, View};
+use puncta_viewer::glyphs::Paint;
 
 /// A scene of glyphs that can be drawn.
 pub(crate) struct Built<G: Glyph, B> {
@@ -16,31 +17,6 @@ pub(crate) struct Built<G: Glyph, B> {
     pub(crate) notes: Vec<String>,
     /// What it is made of, in words.
     pub(crate) facts: Vec<String>,
-}
-
-impl<G: Glyph, B> Built<G, B> {
-    /// Does something with the colors of the records.
-    pub(crate) fn with_coloring<T>(&self, act: impl FnOnce(Coloring<'_>) -> T) -> T {
-        let records = self.scene.records.as_slice();
-        match self.paint {
-            Paint::Scene => act(Coloring::Colors),
-            Paint::Record(color) => {
-                let each = |index: u32| records.get(index as usize).map_or([128; 3], color);
-                act(Coloring::Each(Each::new(&each)))
-            }
-        }
-    }
-}
-
-/// Where the colors of records come from.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Paint<G> {
-    /// The colors of the scene.
-    #[allow(dead_code, reason = "a tool has one of the two")]
-    Scene,
-    /// What a record says itself.
-    #[allow(dead_code, reason = "a tool has one of the two")]
-    Record(fn(&G) -> [u8; 3]),
 }
 
 /// A view and a light that suit a scene. z is up.

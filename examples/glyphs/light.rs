@@ -43,7 +43,7 @@ pub(crate) fn image<G: Glyph + 'static, B: Bricks>(
         fall(beam, (view, picture), (&from, &seen), &mut spots);
     }
     bar.finish();
-    built.with_coloring(|coloring| {
+    built.paint.with_coloring(&built.scene, |coloring| {
         let colors = coloring.colors(&built.scene)?;
         Ok(average(picture, &spots, (supersample, background), |id| colors.of(id)))
     })

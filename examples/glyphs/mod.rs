@@ -1,4 +1,5 @@
-//! What the tools that draw glyphs share: options, drawing, light, and the picture's way to a file.
+//! What the tools that draw glyphs share: options, drawing, light, and the picture's way to a file or
+//! a window.
 
 mod backend;
 mod built;
@@ -17,6 +18,7 @@ mod parse;
 #[allow(dead_code, reason = "a tool uses what its work needs")]
 pub(crate) mod progress;
 
-pub(crate) use built::{Built, Outlook, Paint};
+pub(crate) use built::{Built, Outlook};
 pub(crate) use options::Drawing as DrawingOptions;
+pub(crate) use puncta_viewer::glyphs::Paint;
 pub(crate) use run::run;

@@ -4,13 +4,14 @@ use super::parse::{background, point, size};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use puncta::Background;
+use puncta_viewer::glyphs::angles;
 use std::path::PathBuf;
 
 /// How to draw, and where to.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Drawing")]
 pub(crate) struct Drawing {
-    /// Columns and rows of the picture
+    /// Columns and rows of the picture, or of the window
     #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = size)]
     pub(crate) size: (u32, u32),
 
@@ -54,6 +55,47 @@ pub(crate) struct Drawing {
     /// The image to write; by default the name of the tool with .png
     #[arg(long, value_name = "FILE.png")]
     pub(crate) out: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) window: Window,
+}
+
+/// Whether to show a window, and what it does by itself.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Window {
+    /// Show it in a window instead of writing an image: drag to turn (left) and move (right), scroll to
+    /// zoom, click to pick; there are no shadows
+    #[arg(long, conflicts_with_all = ["out", "sky"])]
+    pub(crate) window: bool,
+
+    /// Write the picture of the window to this file once it is settled, and end
+    #[arg(long, value_name = "FILE.png", requires = "window", hide_short_help = true)]
+    pub(crate) screenshot: Option<PathBuf>,
+
+    /// How many times the window is painted before --screenshot is written, at least
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        requires = "window",
+        hide_short_help = true
+    )]
+    pub(crate) frames: u32,
+
+    /// Turn the camera by this many degrees with each of the --frames, to the right and upwards
+    #[arg(
+        long,
+        value_name = "YAW,PITCH",
+        value_parser = angles,
+        allow_hyphen_values = true,
+        requires = "window",
+        hide_short_help = true
+    )]
+    pub(crate) orbit: Option<[f64; 2]>,
+
+    /// Print a line for each picture of the window that is settled, and for each record that is picked
+    #[arg(long, requires = "window", hide_short_help = true)]
+    pub(crate) log: bool,
 }
 
 /// What draws.

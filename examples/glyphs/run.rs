@@ -1,8 +1,15 @@
-//! The way from options to a picture in a file.
+//! The way from options to a picture in a file or a window.
 
-use super::{built::Built, drawing::Drawing, light, options::Drawing as Options};
+use super::{
+    backend::Backend,
+    built::Built,
+    drawing::Drawing,
+    light,
+    options::{Drawing as Options, Window},
+};
 use anyhow::{Context, Result, ensure};
-use puncta::{Bricks, Glyph, Shading, io::png, shade_glyphs};
+use puncta::{Bricks, Glyph, Shading, View, io::png, shade_glyphs};
+use puncta_viewer::glyphs::{self, Script, Show};
 use std::{
     io::Write,
     path::PathBuf,
@@ -10,7 +17,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Builds, draws and writes; what goes wrong is told on the error stream.
+/// Builds, draws and writes, or shows a window; what goes wrong is told on the error stream.
 pub(crate) fn run<G, B>(
     name: &str,
     options: &Options,
@@ -18,9 +25,9 @@ pub(crate) fn run<G, B>(
 ) -> ExitCode
 where
     G: Glyph + 'static,
-    B: Bricks,
+    B: Bricks + Send + Sync + 'static,
 {
-    match write(name, options, build) {
+    match start(name, options, build) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             // Nobody may be listening any more.
@@ -30,14 +37,14 @@ where
     }
 }
 
-fn write<G, B>(
+fn start<G, B>(
     name: &str,
     options: &Options,
     build: impl FnOnce() -> Result<Built<G, B>>,
 ) -> Result<()>
 where
     G: Glyph + 'static,
-    B: Bricks,
+    B: Bricks + Send + Sync + 'static,
 {
     if let Some(threads) = options.threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
@@ -49,25 +56,72 @@ where
     for note in &built.notes {
         writeln!(std::io::stderr(), "note: {note}").ok();
     }
-    let records = built.scene.records.len();
-    ensure!(records > 0, "there is nothing to draw");
+    ensure!(!built.scene.records.is_empty(), "there is nothing to draw");
     let view = built.outlook.view(options)?;
+    if options.window.window {
+        return show(name, options, (built, view));
+    }
+    write(name, options, (&built, &view), watch)
+}
+
+/// Shows a window until it is closed.
+fn show<G, B>(name: &str, options: &Options, (built, view): (Built<G, B>, View)) -> Result<()>
+where
+    G: Glyph + 'static,
+    B: Bricks + Send + Sync + 'static,
+{
+    let backend = Backend::new(options, &built.glyphs)?;
+    for fact in &built.facts {
+        // Nobody may be listening any more.
+        writeln!(std::io::stdout(), "{fact}").ok();
+    }
+    let Window { screenshot, frames, orbit, log, .. } = options.window.clone();
+    let bounds = built.outlook.bounds();
+    let background = options.background.unwrap_or(built.outlook.background);
+    let Built { scene, bricks, glyphs, paint, .. } = built;
+    let show = Show {
+        name: format!("{name} by {}", backend.name),
+        scene,
+        bricks,
+        glyphs,
+        paint,
+        view,
+        bounds,
+        background,
+        supersample: options.supersample,
+        script: Script { screenshot, frames, orbit, log },
+    };
+    glyphs::show(show, backend)
+}
+
+/// Draws and writes.
+fn write<G, B>(
+    name: &str,
+    options: &Options,
+    (built, view): (&Built<G, B>, &View),
+    mut watch: Watch,
+) -> Result<()>
+where
+    G: Glyph + 'static,
+    B: Bricks,
+{
+    let records = built.scene.records.len();
     let side = |side: u32| side.saturating_mul(options.supersample);
     let fine = view.clone().with_size(side(view.width()), side(view.height()));
     let fine = fine.context("lower --supersample or --size")?;
-    let mut drawing = Drawing::new(options, &built)?;
+    let mut drawing = Drawing::new(options, built)?;
     let (picture, drawn) = drawing.picture(&fine)?;
     watch.lap("draw");
     let background = options.background.unwrap_or(built.outlook.background);
     let supersample = options.supersample;
     let image = if options.sky > 0 {
         let how = (options.sky, supersample, background);
-        light::image(&mut drawing, &built, (&fine, &picture), how)?
+        light::image(&mut drawing, built, (&fine, &picture), how)?
     } else {
-        let Built { glyphs, scene, bricks, .. } = &built;
-        built.with_coloring(|coloring| {
+        let Built { glyphs, scene, bricks, paint, .. } = built;
+        paint.with_coloring(scene, |coloring| {
             let shading = Shading { coloring, background, supersample, ..Shading::default() };
-            shade_glyphs(glyphs, scene, bricks, &view, &picture, &shading)
+            shade_glyphs(glyphs, scene, bricks, view, &picture, &shading)
         })?
     };
     watch.lap("light");

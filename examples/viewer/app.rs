@@ -1,6 +1,7 @@
 //! The state of the viewer: what is shown, what was asked for, and what follows from what.
 
 use crate::{
+    asking::{Asking, REST, Wish},
     camera::Camera,
     cli::{Cli, Order},
     drawing::{Desk, Frame, Shown, lock},
@@ -9,21 +10,19 @@ use crate::{
     options::BackendKind,
     options::ColorBy,
     picking::Pick,
-    window::Message,
+    pointer::Anchor,
+    viewing::Message,
     worker::{Content, Engine, Job, Wanted},
 };
 use anyhow::Result;
 use egui::{Context, TextureHandle, TextureOptions};
-use puncta::{ColorMap, GpuConfig, Image, Progress, View, cpu::draw_legend};
+use puncta::{ColorMap, GpuConfig, Image, Progress, cpu::draw_legend};
 use std::{
     io::Write,
     path::{Path, PathBuf},
     sync::{Arc, mpsc::Sender},
     time::{Duration, Instant},
 };
-
-/// How long the camera must rest before a finer picture is drawn.
-const REST: Duration = Duration::from_millis(200);
 
 pub(crate) struct App {
     pub(crate) cli: Cli,
@@ -53,13 +52,11 @@ pub(crate) struct App {
     pub(crate) notice: String,
     pub(crate) name: String,
     title: Option<String>,
-    /// The view that was asked for last.
-    asked: Option<View>,
-    moved: Instant,
+    asking: Asking,
     /// Whether the user is holding the camera.
     pub(crate) is_held: bool,
-    /// Where the last zoom went: see `viewport.rs`.
-    pub(crate) anchor: Option<(egui::Pos2, glam::DVec3, Instant)>,
+    /// Where the last zoom went: see `pointer.rs`.
+    pub(crate) anchor: Anchor,
 }
 
 impl App {
@@ -90,10 +87,9 @@ impl App {
             notice: String::new(),
             name: cli.render.input.clone().unwrap_or_default(),
             title: None,
-            asked: None,
-            moved: Instant::now(),
+            asking: Asking::default(),
             is_held: false,
-            anchor: None,
+            anchor: Anchor::default(),
             cli,
         };
         app.send(Job::Open(Box::new(app.cli.render.clone())));
@@ -172,7 +168,7 @@ impl App {
         }
         self.camera = Some(camera);
         self.look = Look::new(&self.cli.render, &content.palette);
-        (self.pick, self.anchor, self.radius_scale) = (None, None, 1.0);
+        (self.pick, self.anchor, self.radius_scale) = (None, Anchor::default(), 1.0);
         self.name.clone_from(&content.name);
         let short = Path::new(&content.name).file_name().map(|name| name.to_string_lossy());
         self.title = Some(format!("{} - puncta", short.unwrap_or_default()));
@@ -225,7 +221,7 @@ impl App {
         if let Err(error) = engine.live.show_from(scene, grid, view.clone()) {
             self.error = Some(error.to_string());
         }
-        (self.asked, self.moved) = (Some(view), Instant::now());
+        self.asking = Asking { view: Some(view), moved: Instant::now() };
     }
 
     fn take_frame(&mut self, frame: Frame, context: &Context) {
@@ -264,36 +260,29 @@ impl App {
     /// look again.
     pub(crate) fn ask(&mut self) -> Option<Duration> {
         let (Some(engine), Some(camera)) = (&self.engine, &self.camera) else { return None };
-        let view = camera.view();
-        let fine = view.clone().with_size(view.width() * 2, view.height() * 2).ok();
-        let is_asked = self.asked.as_ref() == Some(view);
-        let is_fine = self.asked.is_some() && self.asked == fine;
-        let next = if !(is_asked || is_fine && self.is_smooth && !self.is_held) {
-            self.moved = Instant::now();
-            *lock(&engine.desk.fine) = None;
-            view.clone()
-        } else if is_asked && self.is_smooth && self.is_settled() && !self.is_held {
-            let rested = self.moved.elapsed();
-            if rested < REST {
-                return Some(REST - rested);
+        let factor = if self.is_smooth { 2 } else { 1 };
+        let state = (self.is_settled(), self.is_held);
+        let (next, fine) = match self.asking.wish(camera.view(), factor, state) {
+            Wish::Nothing => return None,
+            Wish::Wait(time) => return Some(time),
+            Wish::Plain(view) => (view, None),
+            Wish::Fine(view) => {
+                let size = (view.width(), view.height());
+                (view, Some(size))
             }
-            let fine = fine?;
-            *lock(&engine.desk.fine) = Some((fine.width(), fine.height()));
-            fine
-        } else {
-            return None;
         };
-        if let Err(error) = engine.live.look(next.clone()) {
+        *lock(&engine.desk.fine) = fine;
+        let pixels = u64::from(next.width()) * u64::from(next.height());
+        if let Err(error) = engine.live.look(next) {
             self.error = Some(error.to_string());
         }
-        self.progress.open = u64::from(next.width()) * u64::from(next.height());
-        self.asked = Some(next);
+        self.progress.open = pixels;
         Some(REST)
     }
 
     /// Whether the picture that was asked for last is there, and complete.
     fn is_settled(&self) -> bool {
-        let is_asked = |shown: &Shown| self.asked.as_ref() == Some(&shown.view);
+        let is_asked = |shown: &Shown| self.asking.view.as_ref() == Some(&shown.view);
         self.progress.settled() && self.shown.as_ref().is_some_and(is_asked)
     }
 
@@ -305,7 +294,7 @@ impl App {
 
     /// Draws anew, as something else than the camera has changed.
     fn redraw(&mut self) {
-        self.asked = None;
+        self.asking.view = None;
     }
 
     /// Makes images as `look` says from now on.

@@ -1,6 +1,9 @@
 //! The command line: the options of the example `render`, and those of a window.
 
-use crate::options::{Columns, Options};
+use crate::{
+    glyphs::angles,
+    options::{Columns, Options},
+};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum, error::ErrorKind};
 use puncta::gpu::{Fragment, Setup};
 use std::path::PathBuf;
@@ -89,10 +92,4 @@ pub(crate) fn parse() -> Result<Cli, clap::Error> {
     cli.fragment = cli.render.fragment.as_deref().map(str::parse).transpose().map_err(invalid)?;
     cli.render.columns = Columns::All;
     Ok(cli)
-}
-
-fn angles(text: &str) -> Result<[f64; 2], String> {
-    let number = |part: &str| part.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    let angles = text.split_once(',').and_then(|(yaw, pitch)| Some([number(yaw)?, number(pitch)?]));
-    angles.ok_or_else(|| "two numbers with a comma between them".to_owned())
 }

@@ -1,10 +1,14 @@
 //! Drawing: what happens on the drawing thread, and what it shares with the window.
 //!
 //! After each step [`present`] makes a [`Frame`] of it, and the window is told that there is one.
-//! Only the latest is kept. Making an image takes time in which nothing is drawn, so of a picture
-//! that is not settled only as many images are made as leave most of the time to drawing.
+//! Only the latest is kept, and not of every step an image is made: see `pace.rs`.
 
-use crate::{cli::Order, look::Look, stage::Ordering};
+use crate::{
+    cli::Order,
+    look::Look,
+    pace::{About, BUDGET, Pace},
+    stage::Ordering,
+};
 use egui::ColorImage;
 use puncta::{
     ColorMap, Grid, Image, Live, Picture, Pipeline, Progress, Renderer, Scene, Shading, Sphere,
@@ -15,12 +19,6 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError},
     time::{Duration, Instant},
 };
-
-/// How long a step may take: a screen shows a new image about as often.
-const BUDGET: Duration = Duration::from_millis(16);
-
-/// How much longer drawing takes than making images, at least.
-const PATIENCE: u32 = 2;
 
 /// What the window tells the drawing thread, and what that tells the window.
 #[derive(Debug)]
@@ -112,8 +110,7 @@ where
 /// What is kept from one image to the next.
 #[derive(Debug, Default)]
 struct Presenter {
-    /// When the last image was done, and how long it took.
-    last: Option<(Instant, Duration)>,
+    pace: Pace,
     map: Option<(String, ColorMap)>,
     /// A range that was looked up, and what it is the range of.
     range: Option<(Arc<Scene<Sphere>>, String, [f64; 2])>,
@@ -128,12 +125,8 @@ where
     let (view, latency) = (step.view.clone(), step.latency);
     let is_settled = progress.as_ref().is_ok_and(Progress::settled);
     let is_fine = *lock(&desk.fine) == Some((view.width(), view.height()));
-    let is_due = match presenter.last {
-        // What is shown already is better than a fine picture that is half done.
-        _ if is_fine => is_settled,
-        Some((at, took)) => is_settled || latency.is_some() || at.elapsed() > took * PATIENCE,
-        None => true,
-    };
+    let about = About { is_first: latency.is_some(), is_settled, is_fine };
+    let is_due = presenter.pace.is_due(about);
     let mut frame = Frame { progress, view, latency, at: Instant::now(), shown: None };
     if frame.progress.is_ok() && is_due {
         let start = Instant::now();
@@ -145,7 +138,7 @@ where
             Ok(shown) => frame.shown = Some(shown),
             Err(error) => frame.progress = Err(error),
         }
-        presenter.last = Some((Instant::now(), start.elapsed()));
+        presenter.pace.note(start);
         frame.at = Instant::now();
     }
     frame

@@ -13,11 +13,15 @@
 //!   leaves them where the window finds them (`drawing.rs`).
 //! * The **worker** does what takes long and is not drawing: reading, sorting, waking up a GPU
 //!   (`worker.rs`).
+//!
+//! The tools that draw glyphs open windows of their own with `--window`: see [`glyphs`].
 
 mod app;
+mod asking;
 mod camera;
 mod cli;
 mod drawing;
+pub mod glyphs;
 mod graph;
 #[path = "../render/input.rs"]
 #[allow(dead_code, reason = "it is shared with the example `render`, which uses all of it")]
@@ -26,8 +30,10 @@ mod look;
 #[path = "../render/options.rs"]
 #[allow(dead_code, reason = "it is shared with the example `render`, which uses all of it")]
 mod options;
+mod pace;
 mod panel;
 mod picking;
+mod pointer;
 mod progress;
 mod script;
 mod stage;
@@ -35,31 +41,31 @@ mod surface;
 mod theme;
 #[path = "../render/view.rs"]
 mod view;
+mod viewing;
 mod viewport;
 mod window;
 mod worker;
 
 use anyhow::{Context, Result};
 use std::{io::Write, process::ExitCode};
-use winit::event_loop::EventLoop;
 
 /// Reads the command line, and shows what it names until the window is closed.
 pub fn main() -> ExitCode {
-    let code = cli::parse().map_err(Into::into).and_then(run);
-    code.unwrap_or_else(|error: anyhow::Error| {
-        // Nobody may be listening any more.
-        writeln!(std::io::stderr(), "error: {error:#}").ok();
-        ExitCode::FAILURE
-    })
+    match cli::parse().map_err(Into::into).and_then(run) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Nobody may be listening any more.
+            writeln!(std::io::stderr(), "error: {error:#}").ok();
+            ExitCode::FAILURE
+        }
+    }
 }
 
-fn run(cli: cli::Cli) -> Result<ExitCode> {
+fn run(cli: cli::Cli) -> Result<()> {
     if let Some(threads) = cli.render.threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
         pool.build_global().context("cannot start the threads")?;
     }
-    let events = EventLoop::with_user_event().build().context("there is no display")?;
-    let mut window = window::Window::new(cli, events.create_proxy())?;
-    events.run_app(&mut window).context("the window is gone")?;
-    window.result()
+    let size = cli.render.size;
+    window::run(size, |proxy| viewing::Viewing::new(cli, proxy))
 }

@@ -12,7 +12,7 @@ use std::time::Duration;
 
 /// The width of the panel beside the picture, and the height of the line below it, in points.
 const PANEL_WIDTH: f32 = 272.0;
-const STATE_HEIGHT: f32 = 32.0;
+pub(crate) const STATE_HEIGHT: f32 = 32.0;
 
 /// What the pointer and the keys do.
 const HELP: [(&str, &str); 11] = [
@@ -311,7 +311,7 @@ impl App {
 }
 
 /// Shows something in a part of the window, and nothing beyond it.
-fn within(ui: &mut Ui, rect: Rect, margin: Margin, content: impl FnOnce(&mut Ui)) {
+pub(crate) fn within(ui: &mut Ui, rect: Rect, margin: Margin, content: impl FnOnce(&mut Ui)) {
     ui.painter().rect_filled(rect, 0.0, theme::PANEL);
     ui.scope_builder(UiBuilder::new().max_rect(rect - margin), |ui| {
         ui.set_clip_rect(rect.intersect(ui.clip_rect()));
@@ -339,7 +339,7 @@ fn row(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui)) {
 }
 
 /// A count with commas between thousands.
-fn grouped(count: u64) -> String {
+pub(crate) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (place, digit) in digits.chars().enumerate() {

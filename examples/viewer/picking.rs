@@ -1,6 +1,6 @@
 //! Picking: which particle is seen at a pixel, and what is known of it.
 
-use crate::{camera, drawing::Shown, theme};
+use crate::{camera, drawing::Shown, pointer, theme};
 use egui::{Color32, Grid, Painter, Pos2, RichText, Stroke, Ui};
 use glam::{DVec2, DVec3};
 use puncta::{NO_RECORD, Scene, Sphere, View, io::elements};
@@ -16,20 +16,9 @@ pub(crate) struct Pick {
     scene: Arc<Scene<Sphere>>,
 }
 
-/// The pixel of the picture below a pixel of the image.
-fn place(shown: &Shown, pixel: DVec2) -> Option<(usize, DVec2)> {
-    let fine = (pixel + 0.5) * f64::from(shown.factor) - 0.5;
-    let [column, row] = [fine.x.round(), fine.y.round()];
-    let is_inside = (0.0..f64::from(shown.picture.width)).contains(&column)
-        && (0.0..f64::from(shown.picture.height)).contains(&row);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is inside")]
-    let index = || row as usize * shown.picture.width as usize + column as usize;
-    is_inside.then(|| (index(), DVec2::new(column, row)))
-}
-
 /// The point of the surface that is seen at a pixel of the image.
 pub(crate) fn point_at(shown: &Shown, pixel: DVec2) -> Option<DVec3> {
-    let (index, pixel) = place(shown, pixel)?;
+    let (index, pixel) = pointer::place(&shown.picture, shown.factor, pixel)?;
     let depth = f64::from(*shown.picture.depth.get(index)?);
     depth.is_finite().then(|| camera::point_at(&shown.view, pixel, depth))
 }
@@ -37,7 +26,7 @@ pub(crate) fn point_at(shown: &Shown, pixel: DVec2) -> Option<DVec3> {
 impl Pick {
     /// What is seen at a pixel of the image.
     pub(crate) fn at(shown: &Shown, pixel: DVec2) -> Option<Self> {
-        let (place, _) = place(shown, pixel)?;
+        let (place, _) = pointer::place(&shown.picture, shown.factor, pixel)?;
         let index = *shown.picture.id.get(place)?;
         let scene = Arc::clone(&shown.scene);
         (index != NO_RECORD).then(|| Self { id: scene.id(index), index, scene })

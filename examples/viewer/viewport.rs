@@ -2,52 +2,36 @@
 
 use crate::{
     app::App,
-    camera::Pivot,
     drawing::Shown,
     look,
     options::ColorBy,
     picking::{self, Pick},
+    pointer::{self, Placed},
     progress,
     theme::{self, rough},
 };
 use egui::{
-    Align2, Color32, CornerRadius, FontId, Key, Painter, PointerButton, Pos2, Rect, Response,
-    Sense, Stroke, StrokeKind, Ui, pos2, vec2,
+    Align2, Color32, CornerRadius, FontId, Key, Painter, Rect, Response, Sense, Stroke, StrokeKind,
+    Ui, pos2, vec2,
 };
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use puncta::ColorMap;
-use std::time::{Duration, Instant};
-
-/// Radians that a drag of one point turns by.
-const TURN: f64 = 0.006;
-
-/// How much a point of scrolling zooms by; a notch of a wheel is 40 to 50 of them.
-const ZOOM: f64 = 0.003;
 
 /// How many distances to the target a flight covers in a second.
 const SPEED: f64 = 0.8;
-
-/// How long a zoom goes on towards the same point.
-const SAME_ZOOM: Duration = Duration::from_millis(400);
 
 /// Shows the picture in what is left of the window.
 pub(crate) fn show(app: &mut App, ui: &mut Ui) {
     let rect = ui.max_rect();
     let scale = ui.ctx().pixels_per_point();
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "windows have that many pixels"
-    )]
-    let size = [rect.width(), rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
     if let Some(camera) = &mut app.camera {
-        camera.resize((size[0], size[1]));
+        camera.resize(pointer::pixels(rect, scale));
     }
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 0.0, theme::WELL);
     let response = ui.interact(rect, egui::Id::unique("picture"), Sense::click_and_drag());
     let frame = paint(app, &painter, rect);
-    point(app, &response, frame, f64::from(scale));
+    point(app, &response, frame);
     keys(app, ui);
     if let (Some(shown), Some(frame)) = (&app.shown, frame) {
         if let Some(pick) = &app.pick {
@@ -75,85 +59,28 @@ pub(crate) fn show(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// Where the image lies in the window.
-#[derive(Clone, Copy, Debug)]
-struct Placed {
-    rect: Rect,
-    /// Pixels of the image in a point of the window.
-    scale: f64,
-}
-
-impl Placed {
-    /// The pixel of the image at a point of the window; the centre of a pixel has whole
-    /// coordinates.
-    fn pixel(self, at: Pos2) -> DVec2 {
-        let offset = at - self.rect.min;
-        DVec2::new(f64::from(offset.x), f64::from(offset.y)) * self.scale - 0.5
-    }
-
-    fn point(self, pixel: DVec2) -> Pos2 {
-        let offset = (pixel + 0.5) / self.scale;
-        self.rect.min + vec2(rough(offset.x), rough(offset.y))
-    }
-}
-
-/// Paints the image; one of another size keeps its middle and fills the height.
+/// Paints the image, if there is one.
 fn paint(app: &App, painter: &Painter, rect: Rect) -> Option<Placed> {
     let (texture, shown) = (app.texture.as_ref()?, app.shown.as_ref()?);
-    let (width, height) = (shown.image.width as f32, shown.image.height as f32);
-    let pixels = painter.ctx().pixels_per_point();
-    let fits = (rect.height() * pixels - height).abs() < 1.0;
-    let scale = if fits { pixels } else { height / rect.height() };
-    let size = vec2(width, height) / scale;
-    let min = if fits && (rect.width() - size.x).abs() < 1.0 {
-        rect.min
-    } else {
-        rect.center() - size * 0.5
-    };
-    let placed = Rect::from_min_size(min, size);
-    let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-    painter.image(texture.id(), placed, whole, Color32::WHITE);
-    Some(Placed { rect: placed, scale: f64::from(scale) })
+    Some(pointer::paint(painter, rect, (texture.id(), (shown.image.width, shown.image.height))))
 }
 
 /// Turns, moves, zooms and picks.
-fn point(app: &mut App, response: &Response, frame: Option<Placed>, pixels_per_point: f64) {
-    let ctx = &response.ctx;
-    let (modifiers, scroll, dt_pinch) =
-        ctx.input(|input| (input.modifiers, input.smooth_scroll_delta(), input.zoom_delta()));
+fn point(app: &mut App, response: &Response, frame: Option<Placed>) {
     app.is_held = response.dragged();
     let Some(camera) = &mut app.camera else { return };
-    let drag = response.drag_delta();
-    let drag = DVec2::new(f64::from(drag.x), f64::from(drag.y));
-    if response.dragged_by(PointerButton::Primary) && !modifiers.shift {
-        let pivot = if modifiers.command { Pivot::Eye } else { Pivot::Target };
-        camera.turn(pivot, drag.x * TURN, -drag.y * TURN);
-    } else if response.dragged() {
-        camera.pan(drag * pixels_per_point);
-    }
-    let Some(at) = response.hover_pos() else { return };
-    let Some(frame) = frame else { return };
-    let pixel = frame.pixel(at);
-    let seen = app.shown.as_ref().and_then(|shown| picking::point_at(shown, pixel));
-    let zoom = f64::from(scroll.y) * ZOOM + f64::from(dt_pinch).ln();
-    if zoom != 0.0 {
-        // The picture lags behind: what was below the pointer when the zoom began is what is meant.
-        let is_same = |(before, _, since): &(Pos2, DVec3, Instant)| {
-            before.distance(at) < 2.0 && since.elapsed() < SAME_ZOOM
-        };
-        let point = match app.anchor.filter(is_same) {
-            Some((_, point, _)) => point,
-            None => seen.unwrap_or_else(|| camera.point_at(pixel, None)),
-        };
-        app.anchor = Some((at, point, Instant::now()));
-        camera.zoom((-zoom).exp(), point);
-    }
+    let shown = app.shown.as_ref();
+    let seen = |pixel| shown.and_then(|shown| picking::point_at(shown, pixel));
+    app.anchor.steer(camera, response, frame, seen);
+    let Some(pixel) = frame.zip(response.hover_pos()).map(|(frame, at)| frame.pixel(at)) else {
+        return;
+    };
     if response.double_clicked() {
-        if let Some(point) = seen {
+        if let Some(point) = seen(pixel) {
             camera.center(point);
         }
     } else if response.clicked() {
-        app.pick = app.shown.as_ref().and_then(|shown| Pick::at(shown, pixel));
+        app.pick = shown.and_then(|shown| Pick::at(shown, pixel));
     }
 }
 

@@ -1,18 +1,10 @@
-//! The window: events in, paint out.
+//! The window: events in, paint out. What it shows is a [`Program`].
 
-use crate::{
-    app::App,
-    cli::Cli,
-    script::Script,
-    surface::Surface,
-    theme,
-    worker::{self, Content, Engine},
-};
+use crate::{surface::Surface, theme};
 use anyhow::{Context, Result};
 use egui::ViewportId;
 use std::{
-    path::PathBuf,
-    process::ExitCode,
+    fmt::Debug,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -20,29 +12,66 @@ use winit::{
     application::ApplicationHandler,
     dpi::PhysicalSize,
     event::{StartCause, WindowEvent},
-    event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy},
+    event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy},
     window::WindowId,
 };
 
-/// What other threads tell the window.
-#[derive(Debug)]
-pub(crate) enum Message {
-    Opened(Result<Arc<Content>>),
-    Scaled(Result<Arc<Content>>),
-    Started(Result<Engine>),
-    Saved(Result<PathBuf>),
-    /// There is something new on the desk.
-    Drawn,
+/// What a window shows, and what it does with what it is told.
+pub(crate) trait Program {
+    /// What other threads tell the window.
+    type Message: Debug + Send + 'static;
+
+    /// Shows everything, and takes in what the user does.
+    fn show(&mut self, ui: &mut egui::Ui);
+
+    /// Takes in what another thread has to say. Another frame is shown in any case.
+    fn receive(&mut self, message: Self::Message, context: &egui::Context) -> Next;
+
+    /// Goes on after a frame was shown.
+    fn after_frame(&mut self) -> Result<Next>;
+
+    /// The title of the window, if there is a new one.
+    fn new_title(&mut self) -> Option<String>;
+
+    /// Notes how long the window took to make up what it paints.
+    fn note_work(&mut self, _took: Duration) {}
+
+    /// Takes a file that was dropped onto the window.
+    fn open(&mut self, _path: &str) {}
+}
+
+/// What a window does next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Next {
+    /// Waits until something happens.
+    Wait,
+    /// Shows another frame.
+    Again,
+    /// Closes.
+    End,
+}
+
+/// Opens a window of this size for a program, and returns when it is closed.
+pub(crate) fn run<P: Program>(
+    size: (u32, u32),
+    start: impl FnOnce(EventLoopProxy<P::Message>) -> Result<P>,
+) -> Result<()> {
+    let events = EventLoop::with_user_event().build().context("there is no display")?;
+    let context = egui::Context::default();
+    theme::apply(&context);
+    let program = start(events.create_proxy())?;
+    let mut window = Window { program, size, context, open: None, result: Ok(()) };
+    events.run_app(&mut window).context("the window is gone")?;
+    window.result
 }
 
 /// The window, before and after it is open.
-pub(crate) struct Window {
-    app: App,
-    script: Script,
+struct Window<P> {
+    program: P,
     size: (u32, u32),
     context: egui::Context,
     open: Option<Open>,
-    result: Result<ExitCode>,
+    result: Result<()>,
 }
 
 /// A window that is open.
@@ -54,20 +83,7 @@ struct Open {
     due: Option<Instant>,
 }
 
-impl Window {
-    pub(crate) fn new(cli: Cli, proxy: EventLoopProxy<Message>) -> Result<Self> {
-        let context = egui::Context::default();
-        theme::apply(&context);
-        let (script, size) = (Script::new(&cli), cli.render.size);
-        let app = App::new(cli, worker::spawn(proxy)?)?;
-        Ok(Self { app, script, size, context, open: None, result: Ok(ExitCode::SUCCESS) })
-    }
-
-    /// How it went.
-    pub(crate) fn result(self) -> Result<ExitCode> {
-        self.result
-    }
-
+impl<P: Program> Window<P> {
     fn create(&mut self, events: &ActiveEventLoop) -> Result<Open> {
         let attributes = winit::window::Window::default_attributes()
             .with_title("puncta")
@@ -94,14 +110,14 @@ impl Window {
         }
         let start = Instant::now();
         let input = open.input.take_egui_input(&open.window);
-        let mut output = self.context.run_ui(input, |ui| self.app.show(ui));
+        let mut output = self.context.run_ui(input, |ui| self.program.show(ui));
         open.input.handle_platform_output_with_event_loop(
             &open.window,
             events,
             output.platform_output,
         );
         let shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
-        self.app.note_work(start.elapsed());
+        self.program.note_work(start.elapsed());
         let is_painted =
             open.surface.paint(&shapes, &output.textures_delta, output.pixels_per_point);
         // They were applied, whether or not there was a surface to paint on.
@@ -111,13 +127,14 @@ impl Window {
         if !is_painted || delay.is_some_and(|delay| delay.is_zero()) {
             open.window.request_redraw();
         }
-        if let Some(title) = self.app.new_title() {
+        if let Some(title) = self.program.new_title() {
             open.window.set_title(&title);
         }
         if is_painted {
-            match self.script.after_frame(&mut self.app) {
-                Ok(false) => {}
-                Ok(true) => open.window.request_redraw(),
+            match self.program.after_frame() {
+                Ok(Next::Wait) => {}
+                Ok(Next::Again) => open.window.request_redraw(),
+                Ok(Next::End) => events.exit(),
                 Err(error) => self.fail(events, error),
             }
         }
@@ -129,7 +146,7 @@ impl Window {
     }
 }
 
-impl ApplicationHandler<Message> for Window {
+impl<P: Program> ApplicationHandler<P::Message> for Window<P> {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         if self.open.is_none() {
             match self.create(events) {
@@ -151,13 +168,10 @@ impl ApplicationHandler<Message> for Window {
         }
     }
 
-    fn user_event(&mut self, events: &ActiveEventLoop, message: Message) {
-        if let Message::Saved(saved) = &message
-            && self.script.is_over(saved)
-        {
+    fn user_event(&mut self, events: &ActiveEventLoop, message: P::Message) {
+        if self.program.receive(message, &self.context) == Next::End {
             events.exit();
         }
-        self.app.receive(message, &self.context);
         if let Some(open) = &self.open {
             open.window.request_redraw();
         }
@@ -169,7 +183,7 @@ impl ApplicationHandler<Message> for Window {
             WindowEvent::RedrawRequested => return self.paint(events),
             WindowEvent::CloseRequested => events.exit(),
             WindowEvent::Resized(size) => open.surface.resize(size.width, size.height),
-            WindowEvent::DroppedFile(ref path) => self.app.open(&path.to_string_lossy()),
+            WindowEvent::DroppedFile(ref path) => self.program.open(&path.to_string_lossy()),
             _ => {}
         }
         if open.input.on_window_event(&open.window, &event).repaint {

@@ -9,7 +9,7 @@ use crate::{
     options::Options,
     progress::Bar,
     view,
-    window::Message,
+    viewing::Message,
 };
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
