@@ -400,7 +400,7 @@ impl Filler<'_> {
                 match self.ids {
                     Some(all) => words.extend_from_slice(&all[first..last]),
                     None => {
-                        words.extend((first..last).map(|id| u32::try_from(id).unwrap_or(u32::MAX)))
+                        words.extend((first..last).map(|id| u32::try_from(id).unwrap_or(u32::MAX)));
                     }
                 }
                 words.resize(bytes / 4, 0);
