@@ -71,16 +71,16 @@ fn reach(edge: Edge, row: f32) -> vec2<f32> {
     let at = edge.low.x + slope * (row - edge.low.y);
     let slack = 1.0 + abs(slope) * 1e-3;
     if edge.sign * rise < 0.0 {
-        return vec2(at - slack, FAR);
+        return vec2(at - slack, PICTURE_FAR);
     }
     if edge.sign * rise > 0.0 {
-        return vec2(-FAR, at + slack);
+        return vec2(-PICTURE_FAR, at + slack);
     }
-    return vec2(-FAR, FAR);
+    return vec2(-PICTURE_FAR, PICTURE_FAR);
 }
 
 // Beyond all pixels.
-const FAR: f32 = 65536.0;
+const PICTURE_FAR: f32 = 65536.0;
 
 // Draws the pixels of a rectangle, every `step`-th of them from `first` on.
 fn draw_rectangle(facet: Facet, first: vec2<u32>, last: vec2<u32>, step: u32) {
@@ -93,8 +93,8 @@ fn draw_rectangle(facet: Facet, first: vec2<u32>, last: vec2<u32>, step: u32) {
         let a = reach(ab, y);
         let b = reach(bc, y);
         let c = reach(ca, y);
-        let left = whole.x + i32(ceil(clamp(max(a.x, max(b.x, c.x)), -FAR, FAR)));
-        let right = whole.x + i32(floor(clamp(min(a.y, min(b.y, c.y)), -FAR, FAR)));
+        let left = whole.x + i32(ceil(clamp(max(a.x, max(b.x, c.x)), -PICTURE_FAR, PICTURE_FAR)));
+        let right = whole.x + i32(floor(clamp(min(a.y, min(b.y, c.y)), -PICTURE_FAR, PICTURE_FAR)));
         let skipped = u32(max(left - i32(first.x), 0)) + step - 1u;
         let end = min(i32(last.x), right);
         for (var at = i32(first.x + skipped / step * step); at <= end; at += i32(step)) {

@@ -16,7 +16,7 @@ use naga::{
     proc::Layouter,
     valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
 };
-use puncta_avc::{Cuboid, Glyphs};
+use puncta_avc::{Arc, Arrow, Block, Cuboid, Disc, Glyphs, Node, Polygon, Prism};
 
 /// Names, offsets and sizes of a struct's members.
 pub(crate) type Members = Vec<(String, u32, u32)>;
@@ -101,7 +101,14 @@ fn drawing() -> Vec<(String, String, Capabilities)> {
             }
         }
         all.push((format!("splat {word}"), raster::splat_source(visibility), words));
+        all.push((format!("arcs {word}"), solids::source::<Arc>(visibility), words));
+        all.push((format!("arrows {word}"), solids::source::<Arrow>(visibility), words));
+        all.push((format!("blocks {word}"), solids::source::<Block>(visibility), words));
         all.push((format!("cuboids {word}"), solids::source::<Cuboid>(visibility), words));
+        all.push((format!("discs {word}"), solids::source::<Disc>(visibility), words));
+        all.push((format!("nodes {word}"), solids::source::<Node>(visibility), words));
+        all.push((format!("polygons {word}"), solids::source::<Polygon>(visibility), words));
+        all.push((format!("prisms {word}"), solids::source::<Prism>(visibility), words));
         all.push((format!("blocks of facets {word}"), solids::blocks_source(visibility), words));
     }
     all
