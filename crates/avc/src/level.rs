@@ -14,6 +14,11 @@ use std::collections::BTreeSet;
 /// By how much a ball is larger than what it holds: more than rounding.
 const AROUND: f64 = 1.00001;
 
+/// Glyphs whose ball holds the eye are drawn as finely as if they were this share of its radius away:
+/// nobody knows how near their surface is, and the near plane may be as near as nothing. So what is nearer
+/// than that may be coarser than the tolerance.
+const NEAR_SHARE: f64 = 1.0 / 256.0;
+
 /// Whose nearest point decides how finely a record is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Level {
@@ -45,7 +50,8 @@ impl Lens<'_> {
             Level::Record => {
                 let (center, radius) = G::ball(cloud, index);
                 let center = self.camera.place(center.as_dvec3());
-                let depth = nearest_depth(center.z, f64::from(radius) * AROUND);
+                let radius = f64::from(radius);
+                let depth = nearest_depth(center.z, radius * AROUND).max(radius * NEAR_SHARE);
                 depth_below(depth.max(self.camera.near() * (1.0 - 1e-6)))
             }
         }

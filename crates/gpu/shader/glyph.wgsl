@@ -25,12 +25,13 @@ const SLOTS: u32 = 0x3ffffffu;
 // By how much a ball is larger than what it holds: more than rounding.
 const AROUND: f32 = 1.00001;
 
-// The triangles of the records up to each lane, and of the record that has the most.
+// The triangles of the records up to each lane, and whether any record is large.
 var<workgroup> ends: array<u32, 64>;
-var<workgroup> most: atomic<u32>;
+var<workgroup> any_large: atomic<u32>;
 
-// More triangles of a record than these are shared among lanes.
+// Records with more triangles or vertices than these are shared among lanes: they are larger than boxes.
 const FEW: u32 = 12u;
+const VERTICES: u32 = 8u;
 
 @compute @workgroup_size(64)
 fn draw_glyphs(
@@ -71,8 +72,9 @@ fn recall_glyphs(
 
 // Draws the records of a chunk. That of this lane lies at a place and has so many triangles.
 fn draw_chunk(run: Run, own: u32, lane: vec2<u32>, form: Form) {
-    scan(lane.x, lane.y);
-    if atomicLoad(&most) <= FEW {
+    let is_large = lane.y > FEW || (lane.y > 0u && glyph_size(form).x > VERTICES);
+    scan(lane.x, lane.y, is_large);
+    if atomicLoad(&any_large) == 0u {
         draw_own(run, own, form, lane.y);
         return;
     }
@@ -99,35 +101,29 @@ fn draw_chunk(run: Run, own: u32, lane: vec2<u32>, form: Form) {
         let shared_form = glyph_form(at, sight_of(run, position));
         let names = glyph_triangle(shared_form, triangle - start);
         let offset = position - run.reference;
-        let a = corner(run, offset + glyph_vertex(shared_form, names.x));
-        let b = corner(run, offset + glyph_vertex(shared_form, names.y));
-        let c = corner(run, offset + glyph_vertex(shared_form, names.z));
-        draw_triangle(run, id_of(at), a, b, c);
+        // A loop, so that compilers see the code of a glyph once.
+        var corners: array<Corner, 3>;
+        for (var k = 0u; k < 3u; k++) {
+            corners[k] = corner(run, offset + glyph_vertex(shared_form, names[k]));
+        }
+        draw_triangle(run, id_of(at), corners[0], corners[1], corners[2]);
     }
 }
 
-// Draws the triangles of one record, whose vertices are placed once if they are as few as those of a box.
+// Draws the triangles of one record, whose few vertices are placed once.
 fn draw_own(run: Run, at: u32, form: Form, count: u32) {
     if count == 0u {
         return;
     }
     let offset = glyph_position(at) - run.reference;
     let id = id_of(at);
-    let vertices = glyph_size(form).x;
     var corners: array<Corner, 8>;
-    for (var vertex = 0u; vertex < min(vertices, 8u); vertex++) {
+    for (var vertex = 0u; vertex < min(glyph_size(form).x, VERTICES); vertex++) {
         corners[vertex] = corner(run, offset + glyph_vertex(form, vertex));
     }
     for (var triangle = 0u; triangle < count; triangle++) {
-        let names = glyph_triangle(form, triangle);
-        if vertices <= 8u {
-            draw_triangle(run, id, corners[names.x & 7u], corners[names.y & 7u], corners[names.z & 7u]);
-        } else {
-            let a = corner(run, offset + glyph_vertex(form, names.x));
-            let b = corner(run, offset + glyph_vertex(form, names.y));
-            let c = corner(run, offset + glyph_vertex(form, names.z));
-            draw_triangle(run, id, a, b, c);
-        }
+        let names = glyph_triangle(form, triangle) & vec3(VERTICES - 1u);
+        draw_triangle(run, id, corners[names.x], corners[names.y], corners[names.z]);
     }
 }
 
@@ -135,13 +131,13 @@ fn id_of(at: u32) -> u32 {
     return word(at, WORDS - 1u);
 }
 
-fn scan(lane: u32, count: u32) {
+fn scan(lane: u32, count: u32, is_large: bool) {
     ends[lane] = count;
     if lane == 0u {
-        atomicStore(&most, 0u);
+        atomicStore(&any_large, 0u);
     }
     workgroupBarrier();
-    atomicMax(&most, count);
+    atomicMax(&any_large, u32(is_large));
     for (var step = 1u; step < 64u; step *= 2u) {
         var before = 0u;
         if lane >= step {
