@@ -122,7 +122,7 @@ fn pictures_agree<G: Sample>(extent: Extent, (step, factor): (usize, u32)) {
         }
     }
     println!("{other} of {pixels} pixels differ from those of the CPU");
-    assert!(covered > 500, "{covered} pixels tell little");
+    assert!(covered > 100, "{covered} pixels tell little");
     // One pixel in 100 000 may differ, and one is the least that small pictures can tell.
     assert!(other <= 1 + pixels / 100_000, "{other} of {pixels} pixels");
 }
@@ -155,7 +155,7 @@ glyphs! {
     arrows: Arrow, 2, 4;
     arcs: Arc, 2, 4;
     polygons: Polygon, 2, 4;
-    nodes: Node, 2, 4;
+    nodes: Node, 7, 4;
 }
 
 /// A world of some caves, and views of it from outside and from within a cave.
