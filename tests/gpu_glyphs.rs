@@ -58,7 +58,7 @@ fn sights(random: &mut Pcg64Mcg, count: usize) -> Vec<Sight> {
     (0..count).map(|_| sight()).collect()
 }
 
-/// Counts and triangles are the same, vertices up to some units in the last place of the size
+/// Counts and triangles are the same bit by bit, vertices up to some units in the last place of the size
 /// of the glyph.
 fn twins_agree<G: Sample>() {
     let Some(gpu) = open(Extent::Core) else { return };
@@ -70,14 +70,11 @@ fn twins_agree<G: Sample>() {
     records[17] = G::zeroed();
     let sights = sights(&mut random, records.len());
     let cloud = glyphs.cloud(&records);
-    let (mut vertices, mut worst, mut turned) = (0, 0.0_f32, 0);
+    let (mut vertices, mut worst) = (0, 0.0_f32);
     for (index, mesh) in renderer.meshes(&records, &sights).unwrap().iter().enumerate() {
         let own = Mesh::of::<G>(&G::form(&cloud, index, &sights[index]));
         assert_eq!(mesh.triangles.len(), own.triangles.len(), "{index} {:?}", records[index]);
-        if mesh.triangles != own.triangles {
-            turned += 1;
-            continue;
-        }
+        assert!(mesh.triangles == own.triangles, "{index} {:?}", records[index]);
         assert_eq!(mesh.vertices.len(), own.vertices.len());
         let size = own.vertices.iter().fold(0.0_f32, |size, vertex| size.max(vertex.length()));
         for (a, b) in mesh.vertices.iter().zip(&own.vertices) {
@@ -86,10 +83,6 @@ fn twins_agree<G: Sample>() {
         }
     }
     println!("{vertices} vertices, off by {worst:e} of the size of their glyph at most");
-    // Known, and not right yet: by how many steps the rings of a tube are turned against each other is decided
-    // by rounding, and differs for 13 of 1500 nodes that have nothing to do with each other.
-    println!("{turned} with other triangles");
-    assert!(turned <= if G::HAS_NEIGHBORS { records.len() / 50 } else { 0 }, "{turned}");
     assert!(vertices > 3000);
     // A few roundings of a cosine and of what it is multiplied with.
     assert!(worst < 8.0 * f32::EPSILON, "{worst:e}");
@@ -303,4 +296,24 @@ fn styles_can_be_changed() {
     assert!(is_hidden(&first) > 20 && is_hidden(&second) == 0);
     let mut cpu = Pipeline::new((FrustumCull, Depth::default()), CpuRenderer::of(glyphs));
     assert!(differing(&second, &cpu.render(&scene, &held, &view).unwrap()) <= 1);
+}
+
+/// Large triangles, most of which lie one behind the other, in a large picture: no lane is given up.
+#[test]
+fn large_glyphs_are_drawn_whole() {
+    let Some(gpu) = gpu::gpu() else { return };
+    let mut random = Pcg64Mcg::seed_from_u64(71);
+    let mut records = cloud::<Cuboid>(&mut random, 300, 1.0, [0.5, 0.9]);
+    records.push(Cuboid::new([0.0; 3], [1.9, 1.8, 1.7]));
+    let mut scene = Scene::new(records);
+    let grid = Grid::sort_scene(&mut scene, &GridConfig::longest_side(1)).unwrap();
+    for distance in [2.6, 4.0, 6.0] {
+        let eye = DVec3::new(0.7, 0.5, 0.3).normalize() * distance;
+        let view = View::look_at(eye, DVec3::ZERO, DVec3::Z).unwrap();
+        let view = view.with_size(1024, 768).unwrap();
+        let picture = draws::<Cuboid>(gpu).render(&scene, &grid, &view).unwrap();
+        let other = differing(&picture, &on_cpu(&scene, &grid, &view));
+        println!("{other} of {} pixels differ", picture.id.len());
+        assert!(other <= 7, "{other} of 786432 pixels");
+    }
 }

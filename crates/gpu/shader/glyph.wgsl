@@ -33,6 +33,11 @@ var<workgroup> any_large: atomic<u32>;
 const FEW: u32 = 12u;
 const VERTICES: u32 = 8u;
 
+// How many pixels this lane has looked at, and the most: some drivers end a shader that goes through loops
+// more than 65535 times. What is more is left as if it were large.
+var<private> spent: u32;
+const SPENT_MAX: u32 = 16384u;
+
 @compute @workgroup_size(64)
 fn draw_glyphs(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -249,7 +254,12 @@ fn draw_triangle(run: Run, id: u32, a: Corner, b: Corner, c: Corner) {
     facet.columns = pack(first.x, last.x);
     facet.rows = pack(first.y, last.y);
     let sides = vec2<u32>(last - first) + 1u;
-    if sides.x * sides.y <= round.small || !leave(facet) {
+    let area = sides.x * sides.y;
+    let is_small = area <= round.small && spent + area <= SPENT_MAX;
+    if is_small {
+        spent += area;
+    }
+    if is_small || !leave(facet) {
         draw_rectangle(facet, vec2<u32>(first), vec2<u32>(last), 1u);
     }
 }

@@ -19,13 +19,14 @@ fn measure(
     }
 }
 
+// A workgroup for each record: some drivers end a shader that goes through a loop too often.
 @compute @workgroup_size(64)
 fn expand(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let index = number(group, groups, lane);
+    let index = group.y * groups.x + group.x;
     if !is_there(index) {
         return;
     }
@@ -35,13 +36,13 @@ fn expand(
         return;
     }
     let start = starts[index];
-    for (var i = 0u; i < size.x; i++) {
+    for (var i = lane; i < size.x; i += 64u) {
         let vertex = glyph_vertex(form, i);
         vertices[3u * (start.x + i)] = vertex.x;
         vertices[3u * (start.x + i) + 1u] = vertex.y;
         vertices[3u * (start.x + i) + 2u] = vertex.z;
     }
-    for (var i = 0u; i < size.y; i++) {
+    for (var i = lane; i < size.y; i += 64u) {
         let triangle = glyph_triangle(form, i);
         triangles[3u * (start.y + i)] = triangle.x;
         triangles[3u * (start.y + i) + 1u] = triangle.y;

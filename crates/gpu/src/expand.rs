@@ -130,7 +130,9 @@ impl<G: Glyph> GpuRenderer<Solids<G>> {
                 (8, triangles.as_entire_binding()),
                 (13, common.as_entire_binding()),
             ];
-            kernel.run(&mut work, &bindings, u32::try_from(sights.len()).unwrap_or(u32::MAX));
+            // A group for each record.
+            let items = u32::try_from(sights.len() * 64).unwrap_or(u32::MAX);
+            kernel.run(&mut work, &bindings, items);
             work.submit();
         })?;
         let parts = [(&vertices, 0..end[0] * 12), (&triangles, 0..end[1] * 12)];

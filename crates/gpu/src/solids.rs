@@ -278,7 +278,7 @@ impl<G: Glyph> Draw for Solids<G> {
     fn small(&self, gpu: &Gpu) -> u32 {
         let is_cpu = gpu.device.adapter_info().device_type == wgpu::DeviceType::Cpu;
         // One lane at a time or all at once: what is large for a lane differs.
-        if is_cpu { 1 << 16 } else { 128 }
+        if is_cpu { 1024 } else { 128 }
     }
 
     fn scratch(&self, gpu: &Gpu, pool: &mut Pool, _records: u32) -> Result<wgpu::Buffer, Error> {
