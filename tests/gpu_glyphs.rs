@@ -151,6 +151,7 @@ glyphs! {
     arrows: Arrow, 2, 4;
     arcs: Arc, 2, 4;
     polygons: Polygon, 2, 4;
+    nodes: Node, 2, 2;
 }
 
 /// A world of some caves, and views of it from outside and from within a cave.
@@ -265,11 +266,6 @@ fn ranges_can_be_changed() {
     scene.records.edit(7..8)[0].center[1] = f32::NAN;
     let error = grid.refit(&scene.records, 0..100).unwrap_err();
     assert!(error.to_string().starts_with("record 7 lies at"), "{error}");
-}
-
-#[test]
-fn twins_of_nodes_are_the_same() {
-    twins_agree::<Node>();
 }
 
 /// What all glyphs share changes the next picture, and nothing is brought for it.
