@@ -8,8 +8,10 @@ one asks for a `Vec`, which is there for an owned column and is copied for a sha
 with [`std::borrow::Cow`].
 */
 
+mod edits;
+
+use edits::Edits;
 use std::{
-    collections::VecDeque,
     fmt,
     ops::{Deref, Range},
     slice,
@@ -49,25 +51,6 @@ pub struct Column<T> {
     values: Storage<T>,
     version: u64,
     edits: Edits,
-}
-
-/// The ranges that were changed last, so that copies need not be made anew.
-#[derive(Clone, Debug, Default)]
-struct Edits {
-    /// The version before the first of them.
-    since: u64,
-    /// The version after each, and which values it changed.
-    ranges: VecDeque<(u64, Range<usize>)>,
-}
-
-/// How many ranges are remembered.
-const EDITS_MAX: usize = 256;
-
-impl Edits {
-    /// None, from this version on.
-    const fn since(version: u64) -> Self {
-        Self { since: version, ranges: VecDeque::new() }
-    }
 }
 
 /// The versions that were given out.
@@ -151,13 +134,7 @@ impl<T> Column<T> {
     /// have, or if that is too long ago.
     #[must_use]
     pub fn changes_since(&self, version: u64) -> Option<Vec<Range<usize>>> {
-        let Edits { since, ranges } = &self.edits;
-        let first = if version == *since {
-            0
-        } else {
-            1 + ranges.iter().position(|(after, _)| *after == version)?
-        };
-        Some(ranges.range(first..).map(|(_, range)| range.clone()).collect())
+        self.edits.after(version)
     }
 
     /// The values. For a shared column this is a virtual call.
@@ -205,13 +182,7 @@ impl<T: Clone> Column<T> {
         let end = range.end.min(count);
         let range = range.start.min(end)..end;
         self.version = next_version();
-        let Edits { since, ranges } = &mut self.edits;
-        ranges.push_back((self.version, range.clone()));
-        if ranges.len() > EDITS_MAX
-            && let Some((version, _)) = ranges.pop_front()
-        {
-            *since = version;
-        }
+        self.edits.add(self.version, range.clone());
         &mut self.owned()[range]
     }
 
@@ -360,7 +331,7 @@ impl<T: PartialEq> PartialEq<Column<T>> for Vec<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{edits::EDITS_MAX, *};
     use crate::{Error, Scene, Sphere};
     use proptest::prelude::*;
     use std::sync::atomic::AtomicUsize;
