@@ -12,7 +12,9 @@ use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use puncta::{
     Brick, Bricks, Content, CpuRenderer, Cuboid, Depth, FrustumCull, NO_RECORD, Picture, Pipeline,
-    Renderer, Scene, View, Visible, core::Aabb,
+    Renderer, Scene, View, Visible,
+    avc::{Arc, Arrow, Disc, Node, Polygon, Prism},
+    core::Aabb,
 };
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -28,30 +30,30 @@ fn render<G: Sample>(scene: &Scene<G>, held: &G::Held, view: &View) -> Picture {
     Pipeline::new((FrustumCull, Depth::default()), renderer).render(scene, held, view).unwrap()
 }
 
-fn agree<G: Sample>() {
+/// Pictures of every `step`-th scene, smaller by a factor along each side.
+fn pictures_agree<G: Sample>((step, factor): (usize, u32)) {
     let mut total = Verdict::default();
-    for (name, mut scene, view) in scenes::<G>() {
+    for (name, mut scene, view) in scenes::<G>().into_iter().step_by(step) {
+        let size = (view.width() / factor, view.height() / factor);
+        let view = view.with_size(size.0, size.1).unwrap();
         let held = G::hold(&mut scene, 8);
         let picture = render(&scene, &held, &view);
         let reference = Reference::new(&G::glyphs(), &scene, held.bricks(), &view);
         let verdict =
             reference.compare(&picture, CPU).unwrap_or_else(|what| panic!("{name}: {what}"));
         println!("{name:<28} covered {:>6} undecided {:>4}", verdict.covered, verdict.undecided);
-        assert!(verdict.covered > 500, "{name} shows too little");
+        // Arrows are thin.
+        assert!(verdict.covered > 5, "{name} shows too little");
         // Edges that run through the centres of pixels are what stacks are made for, and from afar f32
         // holds few depths.
         let is_hairy = name.contains("stacks") || name.contains("from 1e6");
-        assert!(is_hairy || verdict.undecided < verdict.covered / 100, "{name}");
+        assert!(is_hairy || verdict.undecided <= 1 + verdict.covered / 100, "{name}");
         total.pixels += verdict.pixels;
         total.covered += verdict.covered;
         total.undecided += verdict.undecided;
     }
     println!("{total:?}");
-}
-
-#[test]
-fn pictures_of_cuboids_agree_with_the_reference() {
-    agree::<Cuboid>();
+    assert!(total.covered > 500, "{total:?}");
 }
 
 /// The picture of each brick by itself, merged: nothing is culled, and nothing hides anything.
@@ -145,68 +147,122 @@ fn steps<G: Sample>(
     Ok(())
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { max_shrink_iters: 100, ..ProptestConfig::with_cases(150) })]
-
-    #[test]
-    fn what_is_not_open_does_not_change(
-        seed in any::<u64>(),
-        cells in 1_u32..9,
-        budget in prop_oneof![Just(1_u64), 2_u64..200, Just(u64::MAX)],
-        has_cache in any::<bool>(),
-    ) {
-        steps::<Cuboid>(seed, cells, budget, has_cache)?;
-    }
-
-    #[test]
-    fn odd_views_agree_with_the_reference(seed in any::<u64>(), cells in 1_u32..9) {
-        let (mut scene, view) = odd::<Cuboid>(seed);
-        let held = Cuboid::hold(&mut scene, cells);
-        let picture = render(&scene, &held, &view);
-        let reference = Reference::new(&Cuboid::glyphs(), &scene, held.bricks(), &view);
-        let verdict = reference.compare(&picture, CPU);
-        prop_assert!(verdict.is_ok(), "{:?} {:?}", verdict, view);
-    }
+/// Pictures in views of all kinds.
+fn odd_agrees<G: Sample>(seed: u64, cells: u32) -> Result<(), TestCaseError> {
+    let (mut scene, view) = odd::<G>(seed);
+    let held = G::hold(&mut scene, cells);
+    let picture = render(&scene, &held, &view);
+    let reference = Reference::new(&G::glyphs(), &scene, held.bricks(), &view);
+    let verdict = reference.compare(&picture, CPU);
+    prop_assert!(verdict.is_ok(), "{:?} {:?}", verdict, view);
+    Ok(())
 }
 
-/// Closed solids have no cracks, and nothing sticks out of them.
-fn whole<G: Sample>(record: G, random: &mut Pcg64Mcg) {
-    let mut scene = Scene::new(vec![record]);
-    let held = G::hold(&mut scene, 1);
-    let bounds = scene.bounds();
+/// Closed solids have no cracks, and nothing sticks out of them, in 200 random views.
+fn solids_are_whole<G: Sample>() {
+    let mut random = Pcg64Mcg::seed_from_u64(8);
     let (mut covered, mut undecided) = (0, 0);
     for round in 0..200 {
+        let size = [1e-3, 0.3, 1.0, 7.0, 1e3][round % 5];
+        let center = [0; 3].map(|_| size * (random.random::<f32>() - 0.5));
+        let mut scene = Scene::new(G::solid(&mut random, center, size));
+        if round % 4 == 0 {
+            scene.origin = DVec3::new(1e7, -1e7, 1e7);
+        }
+        let held = G::hold(&mut scene, 1);
+        let bounds = scene.bounds();
         let distance = bounds.extent().max_element() * (0.9 + 3.0 * random.random::<f64>());
-        let view = view(random, distance, bounds.center()).with_size(48, 36).unwrap();
+        let view = view(&mut random, distance, bounds.center()).with_size(48, 36).unwrap();
         let view = if round % 3 == 0 {
             view.with_orthographic(distance * 0.5).unwrap()
         } else {
             view.fitted(&bounds)
         };
         let picture = render(&scene, &held, &view);
-        let expected = footprint(&G::glyphs(), &scene, &held.bricks()[0], (&view, CPU));
+        let expected = footprint(&G::glyphs(), &scene, held.bricks(), (&view, CPU));
         for (pixel, expected) in expected.into_iter().enumerate() {
-            let is_covered = picture.id[pixel] == 0;
+            let is_covered = picture.id[pixel] != NO_RECORD;
             covered += usize::from(is_covered);
             undecided += usize::from(expected.is_none());
             assert!(
                 expected.is_none_or(|expected| expected == is_covered),
-                "{record:?} {pixel} {view:?}"
+                "{:?} {pixel} {view:?}",
+                scene.records
             );
         }
     }
+    println!("{covered} covered, {undecided} undecided");
     assert!(covered > 5000, "{covered} pixels tell little");
     assert!(undecided < covered / 100, "{undecided} of {covered}");
 }
 
-#[test]
-fn cuboids_have_no_cracks() {
-    let mut random = Pcg64Mcg::seed_from_u64(8);
-    for size in [1e-5, 0.3, 7.0, 1e5] {
-        let center = [0; 3].map(|_| size * (random.random::<f32>() - 0.5));
-        let record = Cuboid::sample(&mut random, center, size);
-        whole(record, &mut random);
-    }
+/// A scene far from the origin is as exact as one that is not.
+fn moved_is_the_same<G: Sample>() {
+    let mut random = Pcg64Mcg::seed_from_u64(5);
+    let scene = Scene::new(cloud::<G>(&mut random, 2000, 1.0, [0.01, 0.3]));
+    let (eye, target) = (DVec3::new(3.0, 1.0, 2.0), DVec3::ZERO);
+    // 1e7 and the eye are multiples of 2^-10, so that the view is exactly the same one.
+    let draw = |origin: DVec3| {
+        let view = View::look_at(origin + eye, origin + target, DVec3::Z).unwrap();
+        let mut scene = Scene { origin, ..scene.clone() };
+        let held = G::hold(&mut scene, 9);
+        let picture = render(&scene, &held, &view.with_size(200, 200).unwrap());
+        (picture.original_ids(&scene), picture.depth)
+    };
+    assert!(draw(DVec3::ZERO) == draw(DVec3::new(1e7, -1e7, 1e7)));
+}
+
+macro_rules! glyphs {
+    ($($name:ident: $glyph:ty, $step:literal, $factor:literal;)+) => { $(mod $name {
+        use super::*;
+
+        #[test]
+        fn pictures_agree_with_the_reference() {
+            pictures_agree::<$glyph>(($step, $factor));
+        }
+
+        #[test]
+        fn solids_have_no_cracks() {
+            solids_are_whole::<$glyph>();
+        }
+
+        #[test]
+        fn a_moved_scene_gives_the_same_picture() {
+            moved_is_the_same::<$glyph>();
+        }
+
+        proptest! {
+            #![proptest_config(ProptestConfig {
+                max_shrink_iters: 100,
+                ..ProptestConfig::with_cases(150 / $step / $factor)
+            })]
+
+            #[test]
+            fn what_is_not_open_does_not_change(
+                seed in any::<u64>(),
+                cells in 1_u32..9,
+                budget in prop_oneof![Just(1_u64), 2_u64..200, Just(u64::MAX)],
+                has_cache in any::<bool>(),
+            ) {
+                steps::<$glyph>(seed, cells, budget, has_cache)?;
+            }
+
+            #[test]
+            fn odd_views_agree_with_the_reference(seed in any::<u64>(), cells in 1_u32..9) {
+                odd_agrees::<$glyph>(seed, cells)?;
+            }
+        }
+    })+ };
+}
+
+glyphs! {
+    cuboids: Cuboid, 1, 1;
+    prisms: Prism, 2, 4;
+    discs: Disc, 2, 4;
+    arrows: Arrow, 2, 4;
+    arcs: Arc, 2, 4;
+    polygons: Polygon, 2, 4;
+    nodes: Node, 2, 2;
 }
 
 /// A block of cuboids side by side shows no gap between them, also where their sides run through the
@@ -229,7 +285,7 @@ fn abutting_cuboids_leave_no_gap() {
         };
         let (picture, ..) = draw(small.clone());
         let (_, scene, held) = draw(vec![Cuboid::new([0.0; 3], [2.0; 3])]);
-        let expected = footprint(&Cuboid::glyphs(), &scene, &held.bricks()[0], (&view, CPU));
+        let expected = footprint(&Cuboid::glyphs(), &scene, held.bricks(), (&view, CPU));
         let decided =
             expected.into_iter().zip(&picture.id).filter(|(expected, _)| expected.is_some());
         for (pixel, (expected, id)) in decided.enumerate() {
@@ -254,22 +310,6 @@ fn threads_and_grids_do_not_change_a_byte() {
             assert!(draw(threads, cells) == first, "{name}: {threads} threads, {cells} cells");
         }
     }
-}
-
-#[test]
-fn a_moved_scene_gives_the_same_picture() {
-    let mut random = Pcg64Mcg::seed_from_u64(5);
-    let scene = Scene::new(cloud::<Cuboid>(&mut random, 2000, 1.0, [0.01, 0.3]));
-    let (eye, target) = (DVec3::new(3.0, 1.0, 2.0), DVec3::ZERO);
-    // 1e7 and the eye are multiples of 2^-10, so that the view is exactly the same one.
-    let draw = |origin: DVec3| {
-        let view = View::look_at(origin + eye, origin + target, DVec3::Z).unwrap();
-        let mut scene = Scene { origin, ..scene.clone() };
-        let held = Cuboid::hold(&mut scene, 9);
-        let picture = render(&scene, &held, &view.with_size(200, 200).unwrap());
-        (picture.original_ids(&scene), picture.depth)
-    };
-    assert!(draw(DVec3::ZERO) == draw(DVec3::new(1e7, -1e7, 1e7)));
 }
 
 #[test]

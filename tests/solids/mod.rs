@@ -8,16 +8,19 @@
 
 #![allow(dead_code, reason = "not every test uses all of it")]
 
-use glam::{DVec3, Vec4};
+use glam::DVec3;
 use puncta::{
     Brick, Glyph, Glyphs, NO_RECORD, Picture, Scene, View,
-    avc::{Lens, Levels, Mesh, Sight},
+    avc::{Lens, Levels, Mesh},
     core::Camera,
 };
 use rayon::prelude::*;
 
+mod footprint;
 mod samples;
 pub(crate) mod scenes;
+
+pub(crate) use footprint::footprint;
 
 /// How far a silhouette may be off, in pixels: what a renderer promises.
 pub(crate) type Pixels = f64;
@@ -330,41 +333,6 @@ fn triangles<G: Glyph>(
         );
     }
     mesh.triangles.iter().map(|corners| corners.map(|corner| places[corner as usize])).collect()
-}
-
-/// Pixels that a record must cover, seen by its brick's level of detail: `None` where that hangs on a
-/// hair. All of its triangles count, whatever side of them is seen, and those that are left out because
-/// they surely are not.
-pub(crate) fn footprint<G: Glyph>(
-    glyphs: &Glyphs<G>,
-    scene: &Scene<G>,
-    brick: &Brick,
-    (view, hair): (&View, Pixels),
-) -> Vec<Option<bool>> {
-    let camera = Camera::new(view, scene.origin);
-    let lens = Lens::new(&camera, glyphs.tolerance);
-    let cloud = glyphs.cloud(&scene.records);
-    let level = Levels::new(&camera, std::slice::from_ref(brick)).of(0);
-    let nearest = lens.nearest(level, &cloud, 0);
-    let position = scene.records[0].position();
-    // From everywhere: nothing is left out.
-    let sight = Sight { eye: Vec4::ZERO, ..lens.sight(position, nearest) };
-    let form = G::form(&cloud, 0, &sight);
-    Mesh::of::<G>(&form).check().unwrap();
-    let place = scene.origin - view.eye();
-    let triangles: Vec<[DVec3; 3]> = triangles::<G>(&form, position.as_dvec3(), G::ball(&cloud, 0))
-        .into_iter()
-        .map(|triangle| triangle.map(|corner| place + corner))
-        .collect();
-    let covers = |ray: Ray| {
-        let mut meets = triangles.iter().filter_map(|&triangle| ray.meet(triangle));
-        meets.any(|(depth, _)| depth >= view.near())
-    };
-    let pixel = |index: u32| {
-        let covered = rays(view, (index % view.width(), index / view.width()), hair).map(covers);
-        covered.iter().all(|&is| is == covered[0]).then_some(covered[0])
-    };
-    (0..view.width() * view.height()).map(pixel).collect()
 }
 
 /// The distance between neighboring `f32` at this size.

@@ -164,6 +164,21 @@ impl Sample for Node {
         Self::new(center, random.random_range(0..4), random.random(), motion)
     }
 
+    /// A trajectory, now and then with a place that is taken twice.
+    fn solid(random: &mut Pcg64Mcg, center: [f32; 3], size: f32) -> Vec<Self> {
+        let trajectory = random.random_range(0..4);
+        // No smaller than its tubes are thick, for the eye is outside.
+        let size = size.max(0.2);
+        let mut node = |number: u16| {
+            let center = center.map(|x| x + size * (random.random::<f32>() - 0.5));
+            let motion = [random.random::<f32>(), random.random()];
+            Self::new(center, trajectory, f32::from(number), motion)
+        };
+        let mut nodes: Vec<Self> = (0..4).map(&mut node).collect();
+        nodes.insert(2, nodes[2]);
+        nodes
+    }
+
     fn glyphs() -> Glyphs<Self> {
         Glyphs::new(NodeStyle {
             radii: [0.002, 0.05],

@@ -13,6 +13,11 @@ pub(crate) trait Sample: Glyph + PartialEq + std::fmt::Debug {
     /// A record of about this size.
     fn sample(random: &mut Pcg64Mcg, center: [f32; 3], size: f32) -> Self;
 
+    /// Records that make one closed solid of about this size.
+    fn solid(random: &mut Pcg64Mcg, center: [f32; 3], size: f32) -> Vec<Self> {
+        vec![Self::sample(random, center, size)]
+    }
+
     /// What all of them share.
     fn glyphs() -> Glyphs<Self>;
 
