@@ -1,8 +1,8 @@
 /*!
 Glyphs of any kind, sorted into bricks: those whose number of triangles depends on the view.
 
-Each record is drawn as finely as its brick needs, as the renderers of the library do: so all
-representations have the same triangles.
+Each record is drawn as finely as the renderers of the library do: so all representations have the same
+triangles.
 */
 
 use crate::noise::Noise;
@@ -10,7 +10,7 @@ use anyhow::Result;
 use glam::DVec3;
 use puncta::{
     Bounds, Bricks, Glyph, Glyphs, Grid, GridConfig, Scene, View,
-    avc::{Arc, Lens, Mesh, Node, Runs, Trajectories},
+    avc::{Arc, Lens, Level, Mesh, Node, Runs, Trajectories},
     core::{Bounder, Camera},
 };
 
@@ -25,7 +25,7 @@ pub(crate) struct Curves<G: Glyph, B = Grid> {
 /// What a view makes of glyphs.
 #[derive(Debug)]
 pub(crate) struct Levels {
-    /// The view depth at which each record's brick begins.
+    /// The view depth by which each record is drawn.
     pub(crate) nearest: Vec<f32>,
     /// The number of triangles of each record.
     pub(crate) triangles: Vec<u32>,
@@ -81,7 +81,10 @@ impl<G: Glyph, B: Bricks> Curves<G, B> {
         let mut nearest = vec![0.0; self.scene.records.len()];
         for brick in self.bricks.bricks() {
             let begins = bounder.bound(&brick.bounds, brick.radius_max).nearest;
-            nearest[brick.records.start as usize..brick.records.end as usize].fill(begins);
+            let level = Level::of(brick, begins);
+            for index in brick.records.start as usize..brick.records.end as usize {
+                nearest[index] = lens.nearest(level, &cloud, index);
+            }
         }
         let size = |(index, nearest): (usize, &f32)| {
             let sight = lens.sight(cloud.get(index).position(), *nearest);

@@ -13,7 +13,7 @@ use anyhow::Result;
 use glam::{DVec2, DVec3};
 use puncta::{
     Bricks, View,
-    avc::{Arc, CHORDS_MAX, Lens, Node, Runs},
+    avc::{Arc, CHORDS_MAX, Lens, Level, Node, Runs},
     core::{Bounder, Camera},
 };
 use rand::{RngExt, SeedableRng};
@@ -59,8 +59,9 @@ fn measure<G: Curved>(tolerance: f32, glyphs: u32) -> Result<Deviation> {
         let lens = Lens::new(&camera, tolerance);
         let runs = Runs::with_length(&cloud, 1);
         let Some(brick) = runs.bricks().get(trial.index) else { continue };
-        let nearest = Bounder::new(&camera).bound(&brick.bounds, brick.radius_max).nearest;
-        let sight = lens.sight(position, nearest);
+        let begins = Bounder::new(&camera).bound(&brick.bounds, brick.radius_max).nearest;
+        let level = Level::of(brick, begins);
+        let sight = lens.sight(position, lens.nearest(level, &cloud, trial.index));
         if sight.ring(trial.radius) == CHORDS_MAX || sight.sides(trial.radius) == CHORDS_MAX {
             found.capped += 1;
             continue;
