@@ -27,6 +27,12 @@ struct Camera {
 
 @group(0) @binding(0) var<uniform> camera: Camera;
 
+// For `select` alone: what branches on a uniform is compiled anew by some drivers (lavapipe of Mesa 22)
+// each time that uniforms change.
+fn is_perspective() -> bool {
+    return camera.is_perspective != 0u;
+}
+
 // How many rows and columns of pixels make a tile.
 const TILE: u32 = 8u;
 const INFINITY_BITS: u32 = 0x7f800000u;

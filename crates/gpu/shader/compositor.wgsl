@@ -39,11 +39,9 @@ fn pixel(at: vec2<f32>) -> vec2<i32> {
 // Straight alpha, in what the format of the pass takes.
 fn color(at: vec2<i32>) -> vec4<f32> {
     let srgb = textureLoad(image, at, 0);
-    if composite.is_linear == 0u {
-        return srgb;
-    }
     let curve = pow((srgb.rgb + 0.055) / 1.055, vec3(2.4));
-    return vec4(select(curve, srgb.rgb / 12.92, srgb.rgb <= vec3(0.04045)), srgb.a);
+    let light = select(curve, srgb.rgb / 12.92, srgb.rgb <= vec3(0.04045));
+    return vec4(select(srgb.rgb, light, composite.is_linear != 0u), srgb.a);
 }
 
 @fragment
@@ -60,11 +58,10 @@ fn deep(in: Place) -> Pixel {
         discard;
     }
     let view = textureLoad(depths, at, 0).x;
-    var depth = composite.z.x / composite.w.x;
+    let end = select(0.0, 1.0, composite.z.x * composite.w.y > 0.0);
+    var depth = select(composite.z.x / composite.w.x, end, composite.w.x == 0.0);
     if view < 3.0e38 {
         depth = (composite.z.x * view + composite.z.y) / (composite.w.x * view + composite.w.y);
-    } else if composite.w.x == 0.0 {
-        depth = select(0.0, 1.0, composite.z.x * composite.w.y > 0.0);
     }
     return Pixel(found, clamp(depth, 0.0, 1.0));
 }

@@ -40,16 +40,13 @@ fn of_quad(disc: Disc, which: u32) -> vec2<f32> {
 // A triangle around a circle around the disc's pixels.
 fn of_triangle(disc: Disc, which: u32) -> vec2<f32> {
     let at = vec2<f32>(whole_of(disc.whole)) + disc.fraction;
-    var radius = 1.0 / disc.scale;
-    if camera.is_perspective != 0u {
-        // As in `outline`, along the direction from the middle of the picture, where it is largest.
-        let share = disc.radius / disc.depth;
-        let squared = dot(disc.slope, disc.slope);
-        let stretch = 1.0 / (1.0 - share * share);
-        let reach = share * (1.0 + 0.5 * squared) + sqrt(squared) * (share * share);
-        radius = reach * stretch * camera.per_pixel;
-    }
-    radius = radius * 1.0001 + 0.1;
+    // As in `outline`, along the direction from the middle of the picture, where it is largest.
+    let share = disc.radius / disc.depth;
+    let squared = dot(disc.slope, disc.slope);
+    let stretch = 1.0 / (1.0 - share * share);
+    let reach = share * (1.0 + 0.5 * squared) + sqrt(squared) * (share * share);
+    let wide = reach * stretch * camera.per_pixel;
+    let radius = select(1.0 / disc.scale, wide, is_perspective()) * 1.0001 + 0.1;
     let places = array(vec2(0.0, 2.0), vec2(1.7320509, -1.0), vec2(-1.7320509, -1.0));
     return at + radius * places[which];
 }

@@ -66,9 +66,7 @@ fn recall_glyphs(
     if lane <= (chunk.records >> 26u) {
         let id = id_of(first + lane);
         if (seen[id >> 5u] >> (id & 31u) & 1u) != 0u {
-            if round.pass_of_two == 0u {
-                atomicAdd(&large.recalled, 1u);
-            }
+            atomicAdd(&large.recalled, 1u - round.pass_of_two);
             count = look(runs[chunk.run], first + lane, &form);
         }
     }
@@ -159,15 +157,11 @@ fn sight_of(run: Run, position: vec3<f32>) -> Sight {
     var sight: Sight;
     sight.sharpness = bitcast<f32>(common_words[0]);
     sight.pixel = camera.pixel;
-    if camera.is_perspective != 0u {
-        let center = run.center;
-        let eye = -(camera.right * center.x + camera.up * center.y + camera.forward * center.z);
-        sight.eye = vec4(eye - (position - run.reference), 1.0);
-        sight.nearest = run.nearest;
-    } else {
-        sight.eye = vec4(-camera.forward, 0.0);
-        sight.nearest = 1.0;
-    }
+    let center = run.center;
+    let eye = -(camera.right * center.x + camera.up * center.y + camera.forward * center.z);
+    let place = vec4(eye - (position - run.reference), 1.0);
+    sight.eye = select(vec4(-camera.forward, 0.0), place, is_perspective());
+    sight.nearest = select(1.0, run.nearest, is_perspective());
     return sight;
 }
 
@@ -212,7 +206,7 @@ fn corner(run: Run, offset: vec3<f32>) -> Corner {
         dot(camera.forward, offset),
     );
     let depth = run.center.z + local.z;
-    let spread = select(1.0, depth, camera.is_perspective != 0u);
+    let spread = select(1.0, depth, is_perspective());
     let aside = (local.xy - run.slope * local.z) * (camera.per_pixel / spread);
     return Corner(local, depth, run.fraction + vec2(aside.x, -aside.y));
 }
@@ -236,12 +230,9 @@ fn draw_triangle(run: Run, id: u32, a: Corner, b: Corner, c: Corner) {
     // Camera coordinates are left-handed: this points outwards.
     let normal = cross(c.local - a.local, b.local - a.local);
     var facet: Facet;
-    if camera.is_perspective != 0u {
-        let away = dot(normal, run.center + a.local);
-        facet.slope = normal.xy * (camera.pixel * a.depth / away);
-    } else {
-        facet.slope = -normal.xy * (camera.pixel / normal.z);
-    }
+    let away = dot(normal, run.center + a.local);
+    let seen = normal.xy * (camera.pixel * a.depth / away);
+    facet.slope = select(-normal.xy * (camera.pixel / normal.z), seen, is_perspective());
     facet.slope.y = -facet.slope.y;
     facet.a = a.at;
     facet.b = c.at;

@@ -103,10 +103,8 @@ fn draw_rectangle(facet: Facet, first: vec2<u32>, last: vec2<u32>, step: u32) {
                 continue;
             }
             let change = dot(facet.slope, pixel - facet.a);
-            var depth = facet.depth + change;
-            if camera.is_perspective != 0u {
-                depth = facet.depth / (1.0 + change);
-            }
+            let nearer = facet.depth / (1.0 + change);
+            var depth = select(facet.depth + change, nearer, is_perspective());
             // Of a facet that is seen edge-on, the plane says nothing.
             depth = clamp(depth, facet.nearest, facet.farthest);
             let place = row * camera.width + u32(at);

@@ -37,11 +37,8 @@ fn place(run: Run, sphere: vec4<f32>) -> Disc {
     let center = run.center + local;
     var disc: Disc;
     disc.depth = center.z;
-    var spread = 1.0;
-    if camera.is_perspective != 0u {
-        spread = center.z;
-        disc.slope = center.xy / center.z;
-    }
+    let spread = select(1.0, center.z, is_perspective());
+    disc.slope = select(vec2(0.0), center.xy / center.z, is_perspective());
     let aside = (local.xy - run.slope * local.z) * (camera.per_pixel / spread);
     let at = run.fraction + vec2(aside.x, -aside.y);
     let whole = floor(at);
@@ -60,14 +57,11 @@ fn place(run: Run, sphere: vec4<f32>) -> Disc {
 
 // The pixels that a disc may cover, in the picture: see `Camera::outline` of the core.
 fn outline(disc: ptr<function, Disc>, pixel: vec2<i32>) {
-    var reach = vec2(1.0 / (*disc).scale);
-    if camera.is_perspective != 0u {
-        let share = (*disc).radius / (*disc).depth;
-        let slope = abs((*disc).slope);
-        let stretch = 1.0 / (1.0 - share * share);
-        reach = (share * (1.0 + 0.5 * slope * slope) + slope * (share * share)) * stretch;
-        reach *= camera.per_pixel;
-    }
+    let share = (*disc).radius / (*disc).depth;
+    let slope = abs((*disc).slope);
+    let stretch = 1.0 / (1.0 - share * share);
+    var reach = (share * (1.0 + 0.5 * slope * slope) + slope * (share * share)) * stretch;
+    reach = select(vec2(1.0 / (*disc).scale), reach * camera.per_pixel, is_perspective());
     reach = reach * 1.00001 + SLACK;
     let last = vec2(i32(camera.width), i32(camera.height)) - 1;
     let first = max(pixel + vec2<i32>(ceil((*disc).fraction - reach)), vec2(0));

@@ -57,19 +57,12 @@ fn linear(word: u32) -> f32 {
 fn mixed(sum: vec3<f32>, covered: f32, row: u32) -> vec4<f32> {
     let samples = f32(shade.factor * shade.factor);
     let share = covered / samples;
-    if shade.has_background == 0u {
-        if covered == 0.0 {
-            return vec4(0.0);
-        }
-        return to_bytes(vec4(encode(sum / covered), share));
-    }
-    var color = sum / samples;
-    if covered < samples {
-        let down = f32(row) / f32(max(shade.size.y, 2u) - 1u);
-        let behind = decode((shade.top + (shade.bottom - shade.top) * down) / 255.0);
-        color += behind * (1.0 - share);
-    }
-    return to_bytes(vec4(encode(color), 1.0));
+    let down = f32(row) / f32(max(shade.size.y, 2u) - 1u);
+    let behind = decode((shade.top + (shade.bottom - shade.top) * down) / 255.0);
+    let whole = vec4(encode(sum / samples + behind * (1.0 - share)), 1.0);
+    // Without a background, what is covered has its own color, and the rest none.
+    let cut = select(vec4(0.0), vec4(encode(sum / covered), share), covered > 0.0);
+    return to_bytes(select(cut, whole, shade.has_background != 0u));
 }
 
 fn to_bytes(color: vec4<f32>) -> vec4<f32> {

@@ -5,10 +5,10 @@
 
 fn show(place: u32, depth: f32, id: u32) {
     let key = ~bitcast<u32>(depth);
-    if round.pass_of_two == 0u {
-        atomicMax(&visibility[2u * place + 1u], key);
-    } else if atomicLoad(&visibility[2u * place + 1u]) == key {
-        atomicMax(&visibility[2u * place], ~id);
+    let is_first = round.pass_of_two == 0u;
+    // Not `||`, which would branch on a uniform: see `camera.wgsl`.
+    if is_first | (atomicLoad(&visibility[2u * place + 1u]) == key) {
+        atomicMax(&visibility[2u * place + u32(is_first)], select(~id, key, is_first));
     }
 }
 

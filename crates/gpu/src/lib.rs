@@ -70,6 +70,8 @@ of its own. To keep a program going meanwhile, let [`Live`](puncta_core::Live) d
 latest view takes over at the next one.
 */
 
+#[cfg(test)]
+mod branches;
 mod compositor;
 mod config;
 mod draw;

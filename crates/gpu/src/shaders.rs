@@ -114,6 +114,13 @@ fn drawing() -> Vec<(String, String, Capabilities)> {
     all
 }
 
+/// Every module: its name and its source.
+pub(crate) fn sources() -> Vec<(String, String)> {
+    let core =
+        core_sources().into_iter().map(|(name, source)| (name.to_owned(), source.to_owned()));
+    core.chain(drawing().into_iter().map(|(name, source, _)| (name, source))).collect()
+}
+
 #[test]
 fn kernels_are_core_webgpu() {
     for (name, source) in core_sources() {
@@ -135,13 +142,11 @@ fn drawing_needs_what_is_said() {
 /// A struct that several modules have is the same one in all of them.
 #[test]
 fn structs_are_the_same_everywhere() {
-    let kernels = core_sources();
-    let kernels = kernels.into_iter().map(|(name, source)| (name.to_owned(), source.to_owned()));
-    let drawing = drawing().into_iter().map(|(name, source, _)| (name, source));
-    let modules: Vec<(String, Module)> = kernels
-        .chain(drawing)
-        .map(|(name, source)| (name.clone(), module(&name, &source, everything()).unwrap()))
-        .collect();
+    let module = |(name, source): (String, String)| {
+        let module = module(&name, &source, everything()).unwrap();
+        (name, module)
+    };
+    let modules: Vec<(String, Module)> = sources().into_iter().map(module).collect();
     let is_there = |module: &Module, name: &str| {
         module.types.iter().any(|(_, ty)| ty.name.as_deref() == Some(name))
     };
