@@ -19,7 +19,8 @@ use puncta::{
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use solids::{
-    CPU, Reference, Verdict, footprint,
+    CPU, Reference, Verdict,
+    footprint::footprint,
     scenes::{Sample, cloud, scenes, view},
 };
 

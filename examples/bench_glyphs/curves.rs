@@ -82,9 +82,9 @@ impl<G: Glyph, B: Bricks> Curves<G, B> {
         for brick in self.bricks.bricks() {
             let begins = bounder.bound(&brick.bounds, brick.radius_max).nearest;
             let level = Level::of(brick, begins);
-            for index in brick.records.start as usize..brick.records.end as usize {
-                nearest[index] = lens.nearest(level, &cloud, index);
-            }
+            let records = brick.records.start as usize..brick.records.end as usize;
+            let all = nearest[records.clone()].iter_mut();
+            all.zip(records).for_each(|(to, index)| *to = lens.nearest(level, &cloud, index));
         }
         let size = |(index, nearest): (usize, &f32)| {
             let sight = lens.sight(cloud.get(index).position(), *nearest);

@@ -16,11 +16,9 @@ use puncta::{
 };
 use rayon::prelude::*;
 
-mod footprint;
+pub(crate) mod footprint;
 mod samples;
 pub(crate) mod scenes;
-
-pub(crate) use footprint::footprint;
 
 /// How far a silhouette may be off, in pixels: what a renderer promises.
 pub(crate) type Pixels = f64;
