@@ -13,9 +13,10 @@
 use glam::{DVec3, Vec3, Vec4};
 use gpu::{bits, differing, open};
 use puncta::{
-    Bricks, CpuRenderer, Cuboid, Depth, FrustumCull, Glyphs, Gpu, GpuConfig, GpuRenderer, Grid,
-    GridConfig, Picture, Pipeline, Scene, View,
+    Brick, Bricks, CpuRenderer, Cuboid, Depth, FrustumCull, Glyphs, Gpu, GpuConfig, GpuRenderer,
+    Grid, GridConfig, Picture, Pipeline, Scene, View,
     avc::{Arc, Arrow, Block, BlockWorld, Disc, Filling, Mesh, Node, Polygon, Prism, Sight},
+    core::Aabb,
     gpu::{Extent, Solids},
 };
 use rand::{RngExt, SeedableRng};
@@ -123,6 +124,55 @@ fn pictures_agree<G: Sample>(extent: Extent, (step, factor): (usize, u32)) {
     assert!(other <= 1 + pixels / 100_000, "{other} of {pixels} pixels");
 }
 
+/// Records of which one word is odd: no number, too large, negative, nothing.
+fn odd_records<G: Sample>(odd: &[f32]) -> Vec<G> {
+    let mut random = Pcg64Mcg::seed_from_u64(33);
+    let mut records = cloud::<G>(&mut random, 800, 1.0, [1e-2, 0.5]);
+    let words = size_of::<G>() / 4;
+    for record in bytemuck::cast_slice_mut::<G, u32>(&mut records).chunks_exact_mut(2 * words) {
+        record[random.random_range(0..words)] = odd[random.random_range(0..odd.len())].to_bits();
+    }
+    records
+}
+
+/// Records that are degenerate are counted, are the same for both renderers, and no vertex is NaN.
+fn odd_records_agree<G: Sample>() {
+    let Some(gpu) = open(Extent::Core) else { return };
+    let glyphs = G::glyphs();
+    let mut renderer = GpuRenderer::of(&gpu, glyphs.clone(), GpuConfig::default()).unwrap();
+    let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 0.0, -0.0];
+    let records = odd_records::<G>(&[&odd[..], &[1e38, -1e38, 1e-40]].concat());
+    let cloud = glyphs.cloud(&records);
+    let sights = sights(&mut Pcg64Mcg::seed_from_u64(34), records.len());
+    let meshes = renderer.meshes(&records, &sights).unwrap();
+    let mut empty = 0;
+    for (index, mesh) in meshes.iter().enumerate() {
+        let own = Mesh::of::<G>(&G::form(&cloud, index, &sights[index]));
+        assert_eq!(mesh.triangles, own.triangles, "{index} {:?}", records[index]);
+        assert_eq!(mesh.vertices.len(), own.vertices.len());
+        let mut all = mesh.vertices.iter().chain(&own.vertices);
+        assert!(all.all(|vertex| vertex.is_finite()), "{index} {:?}", records[index]);
+        assert!(own.triangles.is_empty() || G::fault(&cloud, index).is_none());
+        empty += usize::from(own.triangles.is_empty());
+    }
+    let faults = glyphs.faults(&records).sum();
+    println!("{faults} faults, {empty} without a triangle");
+    assert!(faults > 50 && faults <= empty as u64);
+
+    // All in one brick that nobody has measured.
+    let records = odd_records::<G>(&odd);
+    let bounds = Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE };
+    let bricks = vec![Brick { records: 0..800, bounds, radius_max: 2.0, density: 1.0 }];
+    let scene = Scene::new(records);
+    let view = View::look_at(DVec3::new(2.0, 3.0, 5.0), DVec3::ZERO, DVec3::Y).unwrap();
+    let view = view.with_size(80, 60).unwrap();
+    let picture = Pipeline::new((), renderer).render(&scene, &bricks, &view).unwrap();
+    let own = Pipeline::new((), CpuRenderer::of(glyphs)).render(&scene, &bricks, &view).unwrap();
+    assert!(picture.covered_pixels() > 20);
+    let other = differing(&picture, &own);
+    assert!(other <= 1, "{other} pixels differ");
+}
+
 macro_rules! glyphs {
     ($($name:ident: $glyph:ty, $step:literal, $factor:literal;)+) => { $(mod $name {
         use super::*;
@@ -130,6 +180,11 @@ macro_rules! glyphs {
         #[test]
         fn twins_are_the_same() {
             twins_agree::<$glyph>();
+        }
+
+        #[test]
+        fn odd_records_do_no_harm() {
+            odd_records_agree::<$glyph>();
         }
 
         #[test]

@@ -98,7 +98,7 @@ pub enum Fault {
     NotFinite,
     /// An extent is zero or negative, or a turn ends where it starts.
     NoExtent,
-    /// It names what is not in the table.
+    /// It names what is not in the table, or is not its own there.
     Unknown,
 }
 

@@ -96,7 +96,12 @@ pub struct PolygonForm<'a> {
     roof: u32,
 }
 
-impl PolygonForm<'_> {
+impl<'a> PolygonForm<'a> {
+    fn new(polygon: &Polygon, words: &'a [u32]) -> Self {
+        let Polygon { height, corners, rings, .. } = *polygon;
+        Self { words, height, corners, rings, roof: polygon.roof() }
+    }
+
     #[inline]
     fn word(&self, index: u32) -> u32 {
         self.words.get(index as usize).copied().unwrap_or(0)
@@ -159,11 +164,9 @@ impl Glyph for Polygon {
     #[inline]
     fn form<'a>(cloud: &Cloud<'a, Self>, index: usize, _: &Sight) -> PolygonForm<'a> {
         let polygon = cloud.get(index);
-        let Self { height, corners, rings, .. } = polygon;
-        let is_there = polygon.is_finite() && height > 0.0;
-        match polygon.words(cloud.table).filter(|_| is_there) {
-            Some(words) => PolygonForm { words, height, corners, rings, roof: polygon.roof() },
-            None => PolygonForm { words: &[], height, corners: 0, rings: 0, roof: 0 },
+        match (Self::fault(cloud, index), polygon.words(cloud.table)) {
+            (None, Some(words)) => PolygonForm::new(&polygon, words),
+            _ => PolygonForm { words: &[], height: 0.0, corners: 0, rings: 0, roof: 0 },
         }
     }
 
@@ -211,14 +214,20 @@ impl Glyph for Polygon {
             return Some(Fault::Unknown);
         };
         let (corners, rest) = words.split_at(2 * polygon.corners as usize);
-        let form = Self::form(cloud, index, &Sight::everywhere(1.0));
+        let form = PolygonForm::new(&polygon, words);
         let starts = &rest[..polygon.rings as usize - 1];
         let are_known = (0..form.roof)
             .all(|triangle| form.roof_triangle(triangle).iter().all(|&at| at < form.corners))
             && starts.iter().all(|&start| start < form.corners)
             && starts.is_sorted();
-        let are_finite = corners.iter().all(|&word| f32::from_bits(word).is_finite());
-        match (are_finite, are_known) {
+        let number = |word: u32| f32::from_bits(word);
+        let are_finite = corners.iter().all(|&word| number(word).is_finite());
+        // More than rounding: corners that it does not reach are not its own.
+        let is_within = || {
+            let all = corners.chunks_exact(2).map(|at| Vec2::new(number(at[0]), number(at[1])));
+            reach(all, polygon.height) <= polygon.radius * 1.000_01
+        };
+        match (are_finite, are_known && is_within()) {
             (false, _) => Some(Fault::NotFinite),
             (true, false) => Some(Fault::Unknown),
             (true, true) => None,
