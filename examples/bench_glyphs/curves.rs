@@ -9,9 +9,9 @@ use crate::noise::Noise;
 use anyhow::Result;
 use glam::DVec3;
 use puncta::{
-    Bounds, Bricks, Glyph, Glyphs, Grid, GridConfig, Scene, View,
-    avc::{Arc, Lens, Level, Mesh, Node, Runs, Trajectories},
-    core::{Bounder, Camera},
+    Bounds, Bricks, Glyph, Glyphs, Grid, GridConfig, Scene, View, avc,
+    avc::{Arc, Lens, Mesh, Node, Runs, Trajectories},
+    core::Camera,
 };
 
 /// Records in bricks, and how they are drawn.
@@ -76,16 +76,10 @@ impl<G: Glyph, B: Bricks> Curves<G, B> {
     pub(crate) fn levels(&self, view: &View) -> Levels {
         let camera = Camera::new(view, DVec3::ZERO);
         let lens = Lens::new(&camera, self.glyphs.tolerance);
-        let bounder = Bounder::new(&camera);
         let cloud = self.glyphs.cloud(self.scene.records.as_slice());
-        let mut nearest = vec![0.0; self.scene.records.len()];
-        for brick in self.bricks.bricks() {
-            let begins = bounder.bound(&brick.bounds, brick.radius_max).nearest;
-            let level = Level::of(brick, begins);
-            let records = brick.records.start as usize..brick.records.end as usize;
-            let all = nearest[records.clone()].iter_mut();
-            all.zip(records).for_each(|(to, index)| *to = lens.nearest(level, &cloud, index));
-        }
+        let levels = avc::Levels::new(&camera, self.bricks.bricks());
+        let nearest = |(index, number)| lens.nearest(levels.of(number), &cloud, index);
+        let nearest: Vec<f32> = (0..cloud.records.len()).zip(0..).map(nearest).collect();
         let size = |(index, nearest): (usize, &f32)| {
             let sight = lens.sight(cloud.get(index).position(), *nearest);
             G::size(&G::form(&cloud, index, &sight))

@@ -13,8 +13,8 @@ use anyhow::Result;
 use glam::{DVec2, DVec3};
 use puncta::{
     Bricks, View,
-    avc::{Arc, CHORDS_MAX, Lens, Level, Node, Runs},
-    core::{Bounder, Camera},
+    avc::{Arc, CHORDS_MAX, Lens, Levels, Node, Runs},
+    core::Camera,
 };
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -58,9 +58,8 @@ fn measure<G: Curved>(tolerance: f32, glyphs: u32) -> Result<Deviation> {
         let camera = Camera::new(&view, DVec3::ZERO);
         let lens = Lens::new(&camera, tolerance);
         let runs = Runs::with_length(&cloud, 1);
-        let Some(brick) = runs.bricks().get(trial.index) else { continue };
-        let begins = Bounder::new(&camera).bound(&brick.bounds, brick.radius_max).nearest;
-        let level = Level::of(brick, begins);
+        let levels = Levels::new(&camera, runs.bricks());
+        let level = levels.of(u32::try_from(trial.index)?);
         let sight = lens.sight(position, lens.nearest(level, &cloud, trial.index));
         if sight.ring(trial.radius) == CHORDS_MAX || sight.sides(trial.radius) == CHORDS_MAX {
             found.capped += 1;
