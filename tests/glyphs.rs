@@ -12,9 +12,7 @@ use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use puncta::{
     Brick, Bricks, Content, CpuRenderer, Cuboid, Depth, FrustumCull, NO_RECORD, Picture, Pipeline,
-    Renderer, Scene, View, Visible,
-    avc::{Arc, Arrow, Disc, Node, Polygon, Prism},
-    core::Aabb,
+    Renderer, Scene, View, Visible, core::Aabb,
 };
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -31,8 +29,8 @@ fn render<G: Sample>(scene: &Scene<G>, held: &G::Held, view: &View) -> Picture {
     Pipeline::new((FrustumCull, Depth::default()), renderer).render(scene, held, view).unwrap()
 }
 
-/// Pictures of every `step`-th scene, smaller by a factor along each side.
-fn pictures_agree<G: Sample>((step, factor): (usize, u32)) {
+/// Pictures of every `step`-th scene, smaller by a factor along each side. Each covers so many pixels.
+fn pictures_agree<G: Sample>((step, factor): (usize, u32), least: usize) {
     let mut total = Verdict::default();
     for (name, mut scene, view) in scenes::<G>().into_iter().step_by(step) {
         let size = (view.width() / factor, view.height() / factor);
@@ -43,18 +41,16 @@ fn pictures_agree<G: Sample>((step, factor): (usize, u32)) {
         let verdict =
             reference.compare(&picture, CPU).unwrap_or_else(|what| panic!("{name}: {what}"));
         println!("{name:<28} covered {:>6} undecided {:>4}", verdict.covered, verdict.undecided);
-        // Arrows are thin.
-        assert!(verdict.covered > 5, "{name} shows too little");
+        assert!(verdict.covered >= least, "{name} shows too little");
         // Edges that run through the centres of pixels are what stacks are made for, and from afar f32
         // holds few depths.
         let is_hairy = name.contains("stacks") || name.contains("from 1e6");
-        assert!(is_hairy || verdict.undecided <= 1 + verdict.covered / 100, "{name}");
+        assert!(is_hairy || verdict.undecided <= verdict.covered / 100, "{name}");
         total.pixels += verdict.pixels;
         total.covered += verdict.covered;
         total.undecided += verdict.undecided;
     }
     println!("{total:?}");
-    assert!(total.covered > 500, "{total:?}");
 }
 
 /// The picture of each brick by itself, merged: nothing is culled, and nothing hides anything.
@@ -159,12 +155,12 @@ fn odd_agrees<G: Sample>(seed: u64, cells: u32) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Closed solids have no cracks, and nothing sticks out of them, in 200 random views.
+/// Closed solids have no cracks, and nothing sticks out of them, in 400 random views.
 fn solids_are_whole<G: Sample>() {
     let mut random = Pcg64Mcg::seed_from_u64(8);
     let (mut covered, mut undecided) = (0, 0);
-    for round in 0..200 {
-        let size = [1e-3, 0.3, 1.0, 7.0, 1e3][round % 5];
+    for round in 0..400 {
+        let size = [1e-5, 0.3, 1.0, 7.0, 1e5][round % 5];
         let center = [0; 3].map(|_| size * (random.random::<f32>() - 0.5));
         let mut scene = Scene::new(G::solid(&mut random, center, size));
         if round % 4 == 0 {
@@ -214,12 +210,12 @@ fn moved_is_the_same<G: Sample>() {
 }
 
 macro_rules! glyphs {
-    ($($name:ident: $glyph:ty, $step:literal, $factor:literal;)+) => { $(mod $name {
+    ($($name:ident: $glyph:ty, $step:literal, $factor:literal, $covered:literal;)+) => { $(mod $name {
         use super::*;
 
         #[test]
         fn pictures_agree_with_the_reference() {
-            pictures_agree::<$glyph>(($step, $factor));
+            pictures_agree::<$glyph>(($step, $factor), $covered);
         }
 
         #[test]
@@ -256,15 +252,7 @@ macro_rules! glyphs {
     })+ };
 }
 
-glyphs! {
-    cuboids: Cuboid, 1, 1;
-    prisms: Prism, 2, 4;
-    discs: Disc, 2, 4;
-    arrows: Arrow, 2, 4;
-    arcs: Arc, 2, 4;
-    polygons: Polygon, 2, 4;
-    nodes: Node, 2, 2;
-}
+solids::all_glyphs!(glyphs);
 
 /// A block of cuboids side by side shows no gap between them, also where their sides run through the
 /// centres of pixels.

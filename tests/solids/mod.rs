@@ -20,6 +20,23 @@ pub(crate) mod footprint;
 mod samples;
 pub(crate) mod scenes;
 
+/// Hands all kinds of glyphs to a macro: a name, the type, and how their scenes are drawn: every which one,
+/// smaller by which factor along each side, and how many pixels each of them covers at least.
+macro_rules! all_glyphs {
+    ($each:ident) => {
+        $each! {
+            cuboids: puncta::Cuboid, 1, 1, 500;
+            prisms: puncta::avc::Prism, 2, 4, 100;
+            discs: puncta::avc::Disc, 2, 4, 100;
+            arrows: puncta::avc::Arrow, 2, 4, 6;
+            arcs: puncta::avc::Arc, 2, 4, 100;
+            polygons: puncta::avc::Polygon, 2, 4, 100;
+            nodes: puncta::avc::Node, 2, 2, 100;
+        }
+    };
+}
+pub(crate) use all_glyphs;
+
 /// How far a silhouette may be off, in pixels: what a renderer promises.
 pub(crate) type Pixels = f64;
 

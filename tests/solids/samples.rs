@@ -164,7 +164,7 @@ impl Sample for Node {
         Self::new(center, random.random_range(0..4), random.random(), motion)
     }
 
-    /// A trajectory, now and then with a place that is taken twice.
+    /// A trajectory that stays at one of its places for a node.
     fn solid(random: &mut Pcg64Mcg, center: [f32; 3], size: f32) -> Vec<Self> {
         let trajectory = random.random_range(0..4);
         // No smaller than its tubes are thick, for the eye is outside.
