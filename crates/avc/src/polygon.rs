@@ -27,7 +27,8 @@ pub use set::{PolygonError, PolygonFailure, PolygonSet};
 
 /// A polygon between two heights: 32 bytes. [`PolygonSet`] makes them, and the table they refer to.
 ///
-/// Nothing is drawn if the height is not positive.
+/// Nothing is drawn if the height is not positive, or if its words in the table cannot be its own: if they
+/// name corners that are not there, or corners that its ball does not hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Polygon {
@@ -237,6 +238,6 @@ impl Glyph for Polygon {
 
 /// The radius of a ball around the position that holds corners relative to it, and those above them.
 fn reach(corners: impl Iterator<Item = Vec2>, height: f32) -> f32 {
-    let widest = corners.fold(0.0, |widest: f32, corner| widest.max(corner.length()));
-    Vec2::new(widest, height).length() * 1.000_001
+    let widest = corners.fold(0.0, |widest: f32, corner| widest.max(corner.length_squared()));
+    Vec2::new(widest.sqrt(), height).length() * 1.000_001
 }

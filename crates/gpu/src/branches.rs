@@ -2,6 +2,8 @@
 No shader branches on uniforms alone. Lavapipe of Mesa 22 writes the values of such uniforms into the
 shader, and compiles it anew whenever any of them changes: a tenth of a second for each view, and memory
 that is never given back. What is the same for all invocations is chosen by `select` instead.
+
+What a function is given counts as different for each invocation.
 */
 
 use crate::shaders::{everything, module, sources};
@@ -42,8 +44,8 @@ fn source(module: &Module, function: &Function, of: Handle<Expression>) -> Sourc
         }
         Expression::Select { condition, accept, reject } => most(&[*condition, *accept, *reject]),
         Expression::Compose { components, .. } => most(components),
-        Expression::Math { arg, arg1, arg2, .. } => {
-            most(&[Some(*arg), *arg1, *arg2].into_iter().flatten().collect::<Vec<_>>())
+        Expression::Math { arg, arg1, arg2, arg3, .. } => {
+            most(&[Some(*arg), *arg1, *arg2, *arg3].into_iter().flatten().collect::<Vec<_>>())
         }
         Expression::CallResult(called) => returned(module, &module.functions[*called]),
         _ => Source::Invocations,
