@@ -63,6 +63,9 @@ pub(crate) struct Options {
     /// Columns and rows of the picture
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size)]
     size: [u32; 2],
+    /// Only representations whose names contain one of these, such as pulled,Renderer
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    only: Vec<String>,
     /// How often to measure each
     #[arg(long, default_value_t = 5)]
     runs: usize,
@@ -87,6 +90,13 @@ pub(crate) struct Options {
     /// Write a plot here, as SVG
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
+}
+
+impl Options {
+    /// Whether a representation takes part.
+    fn wants(&self, name: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|part| name.contains(part))
+    }
 }
 
 fn main() {

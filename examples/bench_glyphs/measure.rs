@@ -50,7 +50,8 @@ pub(crate) fn measure(devices: &Devices, scene: &Scene, options: &Options) -> Re
     let mut rows = Vec::new();
     let mut subjects = Vec::new();
     let mut reference = None;
-    for (name, way) in candidates::all(devices, scene) {
+    let all = candidates::all(devices, scene).into_iter();
+    for (name, way) in all.filter(|(name, _)| options.wants(name)) {
         match way {
             Ok(mut way) => {
                 let first = look(&mut *way, &mut reference).context(name)?;
@@ -59,6 +60,7 @@ pub(crate) fn measure(devices: &Devices, scene: &Scene, options: &Options) -> Re
             Err(error) => rows.push(Row { name, outcome: Err(format!("{error:#}")) }),
         }
     }
+    ensure!(!(rows.is_empty() && subjects.is_empty()), "no representation has such a name");
     in_turn(options, &mut subjects, |subject| subject.draw(Sight::Here))?;
     let can = |(subject, _): &&mut (Subject<'_>, Vec<Span>)| subject.first.has_away;
     let away = subjects.iter_mut().filter(can);
