@@ -357,3 +357,28 @@ fn large_glyphs_are_drawn_whole() {
         assert!(other <= 7, "{other} of 786432 pixels");
     }
 }
+
+/// More large triangles in one brick than the device has room for: the CPU draws them.
+#[test]
+fn what_there_is_no_room_for_is_drawn() {
+    let mut random = Pcg64Mcg::seed_from_u64(72);
+    let mut records = cloud::<Cuboid>(&mut random, 30_000, 0.1, [0.5, 0.6]);
+    // The nearest last: if anything is missed, it is what should be seen.
+    let eye = Vec3::new(7.0, 5.0, 3.0);
+    let distance = |cuboid: &Cuboid| Vec3::from(cuboid.center).distance(eye);
+    records.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
+    let scene = Scene::new(records);
+    let bounds = Aabb { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) };
+    let bricks = vec![Brick { records: 0..30_000, bounds, radius_max: 1.0, density: 1.0 }];
+    let view = View::look_at(eye.as_dvec3(), DVec3::ZERO, DVec3::Z).unwrap();
+    let view = view.with_size(192, 192).unwrap().with_perspective(0.05).unwrap();
+    let cpu = Pipeline::new((), CpuRenderer::of(Cuboid::glyphs()));
+    let expected = { cpu }.render(&scene, &bricks, &view).unwrap();
+    for extent in [Extent::Full, Extent::Core] {
+        let Some(gpu) = open(extent) else { return };
+        let renderer = GpuRenderer::of(&gpu, Cuboid::glyphs(), GpuConfig::default()).unwrap();
+        let picture = Pipeline::new((), renderer).render(&scene, &bricks, &view).unwrap();
+        assert!(picture.covered_pixels() > 2000);
+        assert_eq!(differing(&picture, &expected), 0);
+    }
+}

@@ -49,6 +49,7 @@ impl Glyph for Block {
     type Style = [u32; 0];
     type Form<'a> = BoxForm;
     const WGSL: &'static str = include_str!("../shader/block.wgsl");
+    const HAS_FEW_TRIANGLES: bool = true;
 
     #[inline]
     fn form(cloud: &Cloud<'_, Self>, index: usize, sight: &Sight) -> BoxForm {

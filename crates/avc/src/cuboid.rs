@@ -54,6 +54,7 @@ impl Glyph for Cuboid {
     type Form<'a> = BoxForm;
     const WGSL: &'static str =
         concat!(include_str!("../shader/extent.wgsl"), include_str!("../shader/cuboid.wgsl"));
+    const HAS_FEW_TRIANGLES: bool = true;
 
     #[inline]
     fn form(cloud: &Cloud<'_, Self>, index: usize, sight: &Sight) -> BoxForm {

@@ -39,7 +39,8 @@ use std::fmt::{self, Debug};
 ///
 /// They read by `word(at, k)` and `real(at, k)` the `k`-th word of a record, by `style_word(k)` and
 /// `style_real(k)` that of [`Glyph::Style`], and by `table_word(i)` and `table_real(i)` the words of
-/// [`Glyphs::table`]. `ring`, `sides` and `circle` are those of this crate.
+/// [`Glyphs::table`]. `ring`, `sides` and `circle` are those of this crate. A `Form` has at most 240
+/// bytes, as 64 of them are kept side by side.
 pub trait Glyph: Record + Pod {
     /// What all records share: sizes, what is selected, when to draw what. A multiple of 4 bytes.
     type Style: Pod + Send + Sync + Debug + PartialEq;
@@ -54,6 +55,10 @@ pub trait Glyph: Record + Pod {
     /// two after. Such records must stay in their order, so they are not sorted:
     /// see [`Runs`](crate::Runs).
     const HAS_NEIGHBORS: bool = false;
+
+    /// Whether no form has more triangles than a box, or hardly any has. On a GPU one lane then draws all
+    /// triangles of a record; otherwise they are shared among lanes. The picture is the same.
+    const HAS_FEW_TRIANGLES: bool = false;
 
     /// The transfer function: what is drawn of a record.
     fn form<'a>(cloud: &Cloud<'a, Self>, index: usize, sight: &Sight) -> Self::Form<'a>;

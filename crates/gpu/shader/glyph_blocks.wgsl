@@ -1,20 +1,6 @@
-// Blocks of large facets: a workgroup each.
+// Blocks of large triangles, by a workgroup each.
 
-@group(0) @binding(7) var<storage, read_write> counts: Counts;
-@group(0) @binding(11) var<storage, read_write> arguments: array<u32, 16>;
-
-// More groups than that lie in two dimensions.
 const ACROSS: u32 = 32768u;
-
-// A dispatch over the blocks; and what was recalled is counted.
-@compute @workgroup_size(1)
-fn over_blocks() {
-    let blocks = min(atomicLoad(&large.blocks), arrayLength(&large.block));
-    arguments[0] = min(blocks, ACROSS);
-    arguments[1] = (blocks + ACROSS - 1u) / ACROSS;
-    arguments[2] = 1u;
-    atomicAdd(&counts.recalled, atomicExchange(&large.recalled, 0u));
-}
 
 @compute @workgroup_size(64)
 fn draw_blocks(
@@ -22,13 +8,33 @@ fn draw_blocks(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let index = group.y * ACROSS + group.x;
-    if index >= min(atomicLoad(&large.blocks), arrayLength(&large.block)) {
-        return;
+    let block = large.list[min(index, room())];
+    let run = runs[block.run];
+    let position = glyph_position(block.at);
+    let form = glyph_form(block.at, sight_of(run, position));
+    let triangle = triangle_of(run, position - run.reference, form, block.number);
+    let first = triangle.first + vec2<i32>(vec2(low(block.place), high(block.place)) * BLOCK);
+    let last = min(first + i32(BLOCK) - 1, triangle.last);
+    if index < min(atomicLoad(&large.blocks), room()) {
+        let facet = facet_of(run, id_of(block.at), triangle);
+        draw_rows(facet, first + vec2(i32(lane & 7u), i32(lane >> 3u)), last);
     }
-    let item = large.block[index];
-    let facet = large.list[item.x];
-    let block = vec2(low(item.y), high(item.y)) * BLOCK;
-    let first = max(block, vec2(low(facet.columns), low(facet.rows)));
-    let last = min(block + BLOCK - 1u, vec2(high(facet.columns), high(facet.rows)));
-    draw_rectangle(facet, first + vec2(lane & 7u, lane >> 3u), last, 8u);
+}
+
+// Draws every eighth pixel of every eighth row.
+fn draw_rows(facet: Facet, first: vec2<i32>, last: vec2<i32>) {
+    let edges = edges_of(facet);
+    for (var row = first.y; row <= last.y; row += 8) {
+        let y = f32(row - facet.whole.y);
+        let a = reach(edges.ab, y);
+        let b = reach(edges.bc, y);
+        let c = reach(edges.ca, y);
+        let left = clamp(max(a.x, max(b.x, c.x)), -PICTURE_FAR, PICTURE_FAR);
+        let right = clamp(min(a.y, min(b.y, c.y)), -PICTURE_FAR, PICTURE_FAR);
+        let skipped = max(facet.whole.x + i32(ceil(left)) - first.x, 0) + 7;
+        let end = min(last.x, facet.whole.x + i32(floor(right)));
+        for (var column = first.x + skipped / 8 * 8; column <= end; column += 8) {
+            draw_pixel(facet, edges, vec2(column, row));
+        }
+    }
 }

@@ -16,27 +16,8 @@ struct Facet {
     nearest: f32,
     farthest: f32,
     id: u32,
-    whole: u32,
-    // The pixels that it may cover, first and last, as two halves of a word.
-    columns: u32,
-    rows: u32,
-    spare: u32,
+    whole: vec2<i32>,
 }
-
-struct Large {
-    facets: atomic<u32>,
-    blocks: atomic<u32>,
-    recalled: atomic<u32>,
-    spare: u32,
-    list: array<Facet, FACETS>,
-    // The facet, and the block of the picture as two halves of a word.
-    block: array<vec2<u32>>,
-}
-
-@group(0) @binding(6) var<storage, read_write> large: Large;
-
-const FACETS: u32 = 16384u;
-const BLOCK: u32 = 32u;
 
 // By how much edges are wider, in pixels: about what rounding may move them by.
 const WIDER: f32 = 2e-5;
@@ -82,35 +63,26 @@ fn reach(edge: Edge, row: f32) -> vec2<f32> {
 // Beyond all pixels.
 const PICTURE_FAR: f32 = 65536.0;
 
-// Draws the pixels of a rectangle, every `step`-th of them from `first` on.
-fn draw_rectangle(facet: Facet, first: vec2<u32>, last: vec2<u32>, step: u32) {
-    let whole = whole_of(facet.whole);
-    let ab = edge(facet.a, facet.b);
-    let bc = edge(facet.b, facet.c);
-    let ca = edge(facet.c, facet.a);
-    for (var row = first.y; row <= last.y; row += step) {
-        let y = f32(i32(row) - whole.y);
-        let a = reach(ab, y);
-        let b = reach(bc, y);
-        let c = reach(ca, y);
-        let left = whole.x + i32(ceil(clamp(max(a.x, max(b.x, c.x)), -PICTURE_FAR, PICTURE_FAR)));
-        let right = whole.x + i32(floor(clamp(min(a.y, min(b.y, c.y)), -PICTURE_FAR, PICTURE_FAR)));
-        let skipped = u32(max(left - i32(first.x), 0)) + step - 1u;
-        let end = min(i32(last.x), right);
-        for (var at = i32(first.x + skipped / step * step); at <= end; at += i32(step)) {
-            let pixel = vec2(f32(at - whole.x), y);
-            if !(is_inside(ab, pixel) && is_inside(bc, pixel) && is_inside(ca, pixel)) {
-                continue;
-            }
-            let change = dot(facet.slope, pixel - facet.a);
-            let nearer = facet.depth / (1.0 + change);
-            var depth = select(facet.depth + change, nearer, is_perspective());
-            // Of a facet that is seen edge-on, the plane says nothing.
-            depth = clamp(depth, facet.nearest, facet.farthest);
-            let place = row * camera.width + u32(at);
-            if may_show(place, depth) {
-                show(place, depth, facet.id);
-            }
-        }
+struct Edges {
+    ab: Edge,
+    bc: Edge,
+    ca: Edge,
+}
+
+fn edges_of(facet: Facet) -> Edges {
+    return Edges(edge(facet.a, facet.b), edge(facet.b, facet.c), edge(facet.c, facet.a));
+}
+
+// Draws a pixel, if the facet covers it.
+fn draw_pixel(facet: Facet, edges: Edges, at: vec2<i32>) {
+    let pixel = vec2<f32>(at - facet.whole);
+    if !(is_inside(edges.ab, pixel) && is_inside(edges.bc, pixel) && is_inside(edges.ca, pixel)) {
+        return;
     }
+    let change = dot(facet.slope, pixel - facet.a);
+    let nearer = facet.depth / (1.0 + change);
+    let depth = select(facet.depth + change, nearer, is_perspective());
+    // Of a facet that is seen edge-on, the plane says nothing.
+    let held = clamp(depth, facet.nearest, facet.farthest);
+    show(u32(at.y) * camera.width + u32(at.x), held, facet.id);
 }

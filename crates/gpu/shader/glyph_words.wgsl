@@ -12,6 +12,10 @@ fn real(at: u32, k: u32) -> f32 {
     return bitcast<f32>(records[at * WORDS + k]);
 }
 
+fn id_of(at: u32) -> u32 {
+    return word(at, WORDS - 1u);
+}
+
 fn style_word(k: u32) -> u32 {
     return common_words[1u + k];
 }

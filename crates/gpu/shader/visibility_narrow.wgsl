@@ -6,8 +6,8 @@
 fn show(place: u32, depth: f32, id: u32) {
     let key = ~bitcast<u32>(depth);
     let is_first = round.pass_of_two == 0u;
-    // Not `||`, which would branch on a uniform: see `camera.wgsl`.
-    if is_first | (atomicLoad(&visibility[2u * place + 1u]) == key) {
+    let now = atomicLoad(&visibility[2u * place + 1u]);
+    if select(now == key, now < key, is_first) {
         atomicMax(&visibility[2u * place + u32(is_first)], select(~id, key, is_first));
     }
 }

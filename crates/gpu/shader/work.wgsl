@@ -19,7 +19,8 @@ struct Counts {
     records: atomic<u32>,
     recalled: atomic<u32>,
     open: atomic<u32>,
-    spare: u32,
+    // Blocks of large triangles for which there was no room, in a round.
+    missed: atomic<u32>,
 }
 
 @group(0) @binding(2) var<uniform> round: Round;

@@ -11,6 +11,7 @@ use crate::{
     runs::Run,
     shape::{Close, Near, Shape},
     store::Store,
+    survey,
     table::Known,
 };
 use puncta_avc::Level;
@@ -46,7 +47,7 @@ impl<S> GpuRenderer<S> {
                 }
                 Known::Close(_) => {
                     close += Amount { bricks: 1, records: records.len() as u64 };
-                    self.add_close(content, &mut batch, (index, records))?;
+                    self.add_close(content, &mut batch, (index, records), false)?;
                 }
             }
         }
@@ -55,6 +56,27 @@ impl<S> GpuRenderer<S> {
             frame.table.forget_records();
         }
         Ok(close)
+    }
+
+    /// Draws bricks by the CPU, where the device had no room for what is large. They were counted before.
+    pub(crate) fn draw_missed<R: Record>(
+        &mut self,
+        content: &Content<'_, R>,
+        bricks: &[VisibleBrick],
+    ) -> Result<(), Error>
+    where
+        S: Shape<R>,
+    {
+        let mut indices: Vec<u32> = bricks.iter().map(VisibleBrick::index).collect();
+        if self.config.skipping == Skipping::Hidden {
+            indices = survey::glance(self, &indices)?;
+        }
+        let mut batch = Batch::new(self.store.as_ref().map_or(0, Store::pages));
+        for index in indices {
+            let records = content.bricks[index as usize].records.clone();
+            self.add_close(content, &mut batch, (index, records), true)?;
+        }
+        self.flush(content, &mut batch)
     }
 
     /// Adds the records of a brick to a batch, which goes through first if it is full.
@@ -96,12 +118,13 @@ impl<S> GpuRenderer<S> {
         self.store.as_mut().and_then(|store| store.take(segment, self.round, &mut batch.missing))
     }
 
-    /// Adds the records of a close brick, each on its own.
+    /// Adds the records of a close brick, each on its own; or all of them for the CPU to draw.
     fn add_close<R: Record>(
         &mut self,
         content: &Content<'_, R>,
         batch: &mut Batch<S::Exact>,
         (brick, records): (u32, Range<u32>),
+        by_cpu: bool,
     ) -> Result<(), Error>
     where
         S: Shape<R>,
@@ -113,7 +136,7 @@ impl<S> GpuRenderer<S> {
         let bound = Bounder::new(&camera).bound(&holder.bounds, holder.radius_max);
         let level = Level::of(holder, bound.nearest);
         for index in records {
-            let near = Near { camera: &camera, scene: content.scene, index, level };
+            let near = Near { camera: &camera, scene: content.scene, index, level, by_cpu };
             let close = self.shape.close(&near);
             if self.is_crowded(batch) {
                 self.flush(content, batch)?;

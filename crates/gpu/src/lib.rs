@@ -83,6 +83,7 @@ mod frame;
 mod gpu;
 mod kernel;
 mod kernels;
+mod pace;
 mod paint;
 mod picture;
 mod raster;

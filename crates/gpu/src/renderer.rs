@@ -4,6 +4,7 @@ use crate::{
     Error, Fragment, Gpu, GpuConfig, Setup, Skipping, Solids, Spheres, finish,
     kernel::Work,
     kernels::Kernels,
+    pace::Pace,
     picture::Frame,
     round::Bench,
     shade_pass::Shading,
@@ -13,15 +14,6 @@ use crate::{
 };
 use puncta_avc::{Glyph, Glyphs};
 use puncta_core::{Amount, Content, Picture, Record, Renderer, View, VisibleBrick};
-
-/// The share of the bricks that are drawn before those that are left are tested for the first time, and
-/// the smallest number.
-const FIRST_SHARE: usize = 128;
-const FIRST_MIN: usize = 64;
-
-/// The share of the bricks that are left by then, of which more than that is drawn at once later: what
-/// is hidden is neither drawn nor brought, and testing takes few turns.
-const LATER_SHARE: usize = 64;
 
 /// The most storage buffers that a shader sees at once: the default of WebGPU.
 const BUFFERS_MIN: u32 = 8;
@@ -273,15 +265,20 @@ impl<S> GpuRenderer<S> {
         let indices = self.prepare(content, bricks)?;
         self.clear_counts()?;
         let mut close = Amount::default();
-        let (mut rest, first) = (indices, bricks.len().div_ceil(FIRST_SHARE).max(FIRST_MIN));
+        let mut rest = indices;
+        let mut pace = Pace::new(rest.len());
         while !rest.is_empty() {
             let count = match self.config.skipping {
                 Skipping::Nothing => rest.len(),
                 Skipping::Hidden => {
                     if self.frame.as_ref().is_some_and(|frame| frame.has_drawn) {
+                        let before = rest.len();
                         rest = survey::glance(self, &rest)?;
+                        pace.adapt(before - rest.len(), before);
                     }
-                    first.max(rest.len() / LATER_SHARE).min(rest.len())
+                    let Some(frame) = &self.frame else { break };
+                    let pixels = |&brick: &u32| frame.table.pixels(brick);
+                    pace.next(frame.target.pixels().into(), rest.iter().map(pixels))
                 }
             };
             let later = rest.split_off(count);
@@ -289,6 +286,9 @@ impl<S> GpuRenderer<S> {
             rest = later;
         }
         let counted = self.bench.counted(&self.gpu)?;
+        if counted.missed > 0 {
+            self.draw_missed(content, bricks)?;
+        }
         close += Amount { bricks: counted.bricks.into(), records: counted.records.into() };
         Ok(close)
     }

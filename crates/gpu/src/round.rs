@@ -69,7 +69,7 @@ pub(crate) struct Counts {
     pub(crate) records: u32,
     pub(crate) recalled: u32,
     pub(crate) open: u32,
-    pub(crate) spare: u32,
+    pub(crate) missed: u32,
 }
 
 /// What goes through together: pieces by page, and what must be brought or drawn by the CPU first.
@@ -296,7 +296,7 @@ mod tests {
         assert_same_layout!(
             CULL,
             "Counts",
-            Counts { chunks, large, small, bricks, records, recalled, open, spare }
+            Counts { chunks, large, small, bricks, records, recalled, open, missed }
         );
     }
 }

@@ -77,6 +77,12 @@ impl Run {
         }
     }
 
+    /// How many pixels it may cover.
+    pub(crate) fn pixels(&self) -> u64 {
+        let side = |halves: u32| u64::from((halves >> 16).saturating_sub(halves & 0xffff)) + 1;
+        side(self.columns) * side(self.rows)
+    }
+
     /// The run of a brick.
     pub(crate) fn of_brick(
         camera: &Camera,

@@ -77,8 +77,8 @@ const WIDE: Capabilities =
 
 /// Every module that is the same everywhere.
 fn core_sources() -> Vec<(&'static str, &'static str)> {
-    let compositor = ("compositor", compositor::SOURCE);
-    kernels::SOURCES.into_iter().chain(shade_pass::SOURCES).chain([compositor]).collect()
+    let others = [("compositor", compositor::SOURCE), ("over blocks", solids::OVER_BLOCKS)];
+    kernels::SOURCES.into_iter().chain(shade_pass::SOURCES).chain(others).collect()
 }
 
 /// Every module of drawing: its name, its source and what it needs beyond core WebGPU.
@@ -101,15 +101,19 @@ fn drawing() -> Vec<(String, String, Capabilities)> {
             }
         }
         all.push((format!("splat {word}"), raster::splat_source(visibility), words));
-        all.push((format!("arcs {word}"), solids::source::<Arc>(visibility), words));
-        all.push((format!("arrows {word}"), solids::source::<Arrow>(visibility), words));
-        all.push((format!("blocks {word}"), solids::source::<Block>(visibility), words));
-        all.push((format!("cuboids {word}"), solids::source::<Cuboid>(visibility), words));
-        all.push((format!("discs {word}"), solids::source::<Disc>(visibility), words));
-        all.push((format!("nodes {word}"), solids::source::<Node>(visibility), words));
-        all.push((format!("polygons {word}"), solids::source::<Polygon>(visibility), words));
-        all.push((format!("prisms {word}"), solids::source::<Prism>(visibility), words));
-        all.push((format!("blocks of facets {word}"), solids::blocks_source(visibility), words));
+        let mut glyph = |name, sources: [String; 3]| {
+            for (part, source) in ["all", "seen", "large"].iter().zip(sources) {
+                all.push((format!("{name} {part} {word}"), source, words));
+            }
+        };
+        glyph("arcs", solids::sources::<Arc>(visibility));
+        glyph("arrows", solids::sources::<Arrow>(visibility));
+        glyph("blocks", solids::sources::<Block>(visibility));
+        glyph("cuboids", solids::sources::<Cuboid>(visibility));
+        glyph("discs", solids::sources::<Disc>(visibility));
+        glyph("nodes", solids::sources::<Node>(visibility));
+        glyph("polygons", solids::sources::<Polygon>(visibility));
+        glyph("prisms", solids::sources::<Prism>(visibility));
     }
     all
 }
@@ -160,7 +164,7 @@ fn structs_are_the_same_everywhere() {
         ("Tile", Some(8)),
         ("Shade", None),
         ("Entry", None),
-        ("Facet", Some(solids::FACET_BYTES)),
+        ("Block", Some(solids::BLOCK_BYTES)),
     ];
     for (name, size) in sizes {
         let having = modules.iter().filter(|(_, module)| is_there(module, name));

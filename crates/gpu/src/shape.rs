@@ -76,6 +76,8 @@ pub(crate) struct Near<'a, R> {
     pub(crate) index: u32,
     /// How finely the records of its brick are drawn.
     pub(crate) level: Level,
+    /// Whether the CPU must draw it.
+    pub(crate) by_cpu: bool,
 }
 
 /// How it is drawn.

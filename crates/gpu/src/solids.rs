@@ -35,12 +35,9 @@ const AROUND: f64 = 1.00001;
 /// far away.
 const HAIR: f64 = 1e-3;
 
-/// How many large facets there is room for, and how many blocks of them.
-const FACETS: u64 = 16_384;
-const BLOCKS: u64 = 1 << 18;
-
-/// The bytes of `Facet` of `glyph_facet.wgsl`.
-pub(crate) const FACET_BYTES: u64 = 64;
+/// How many blocks of large triangles there is room for, and their bytes.
+const BLOCKS: u64 = 1 << 16;
+pub(crate) const BLOCK_BYTES: u64 = 16;
 
 /// Draws records as glyphs.
 pub struct Solids<G: Glyph> {
@@ -76,28 +73,35 @@ pub(crate) fn glyph_source<G: Glyph>() -> String {
     [&constants, PRELUDE, shader!("glyph_words"), G::WGSL].concat()
 }
 
-/// The shader that draws a glyph.
-pub(crate) fn source<G: Glyph>(visibility: &str) -> String {
+/// The shaders of a glyph: what draws chunks, what does so for records that were seen before, and what
+/// draws blocks of large triangles.
+pub(crate) fn sources<G: Glyph>(visibility: &str) -> [String; 3] {
     let before = shader!("camera", "disc", "work", "place");
-    let after = shader!("glyph_facet", "glyph");
-    [before, visibility, &glyph_source::<G>(), after].concat()
+    let glyph = glyph_source::<G>();
+    let after = shader!("glyph_large", "glyph_facet", "glyph_triangle");
+    let common = [before, visibility, &glyph, after].concat();
+    let draw = if G::HAS_FEW_TRIANGLES {
+        shader!("glyph", "glyph_alone")
+    } else {
+        shader!("glyph", "glyph_together")
+    };
+    let wanted = [shader!("glyph_any"), shader!("glyph_seen")];
+    let [all, seen] = wanted.map(|wanted| [&common, draw, wanted].concat());
+    [all, seen, common + shader!("glyph_blocks")]
 }
 
-/// The shader that draws what is large of any glyph.
-pub(crate) fn blocks_source(visibility: &str) -> String {
-    let before = shader!("camera", "disc", "work");
-    [before, visibility, shader!("glyph_facet", "glyph_blocks")].concat()
-}
+/// The shader that counts blocks.
+pub(crate) const OVER_BLOCKS: &str = shader!("camera", "work", "glyph_large", "glyph_over");
 
 impl<G: Glyph> Solids<G> {
     pub(crate) fn new(gpu: &Gpu, glyphs: Glyphs<G>) -> Result<Self, Error> {
-        let (own, blocks) = (source::<G>(gpu.visibility()), blocks_source(gpu.visibility()));
+        let [all, seen, blocks] = sources::<G>(gpu.visibility());
         gpu.guard("pipelines", || {
             let kernel = |label, source: &str, entry| Kernel::new(gpu, label, (source, entry), &[]);
             Self {
-                draw: kernel("Solids::draw", &own, "draw_glyphs"),
-                recall: kernel("Solids::recall", &own, "recall_glyphs"),
-                over_blocks: kernel("Solids::over_blocks", &blocks, "over_blocks"),
+                draw: kernel("Solids::draw", &all, "draw_glyphs"),
+                recall: kernel("Solids::recall", &seen, "draw_glyphs"),
+                over_blocks: kernel("Solids::over_blocks", OVER_BLOCKS, "over_blocks"),
                 draw_blocks: kernel("Solids::draw_blocks", &blocks, "draw_blocks"),
                 glyphs,
                 common: None,
@@ -146,17 +150,20 @@ impl<G: Glyph> Solids<G> {
         let Some(common) = &self.common else { return };
         // What was counted as recalled stays until it is added up.
         work.encoder.clear_buffer(place.scratch, 0, Some(8));
-        let mut bindings = vec![
+        let mut shared = vec![
             (0, frame.target.camera.as_entire_binding()),
             (1, place.runs.as_entire_binding()),
-            (2, round.as_entire_binding()),
             (3, place.page.records.as_entire_binding()),
-            (5, place.chunks.as_entire_binding()),
             (6, place.scratch.as_entire_binding()),
-            (8, frame.target.tiles.as_entire_binding()),
             (9, frame.target.visibility.as_entire_binding()),
             (13, common.as_entire_binding()),
         ];
+        let mut bindings = shared.clone();
+        bindings.extend([
+            (2, round.as_entire_binding()),
+            (5, place.chunks.as_entire_binding()),
+            (8, frame.target.tiles.as_entire_binding()),
+        ]);
         let kernel = match place.seen {
             Some(seen) => {
                 bindings.push((10, seen.as_entire_binding()));
@@ -171,15 +178,10 @@ impl<G: Glyph> Solids<G> {
             (11, bench.blocks.as_entire_binding()),
         ];
         self.over_blocks.run_once(work, &counted);
-        let mut bindings = vec![
-            (0, frame.target.camera.as_entire_binding()),
-            (6, place.scratch.as_entire_binding()),
-            (9, frame.target.visibility.as_entire_binding()),
-        ];
         if frame.target.known.is_some() {
-            bindings.push((2, round.as_entire_binding()));
+            shared.push((2, round.as_entire_binding()));
         }
-        self.draw_blocks.run_indirect(work, &bindings, (&bench.blocks, 0));
+        self.draw_blocks.run_indirect(work, &shared, (&bench.blocks, 0));
     }
 }
 
@@ -217,7 +219,7 @@ impl<G: Glyph> Shape<G> for Solids<G> {
         let (center, radius) = G::ball(&cloud, index);
         let (center, radius) = (camera.place(center.as_dvec3()), f64::from(radius) * AROUND);
         let Some(bound) = bound_of_sphere(camera, center, radius) else { return Close::Nothing };
-        if is_plain_sphere(camera, center, radius) {
+        if !near.by_cpu && is_plain_sphere(camera, center, radius) {
             let position = cloud.get(index).position();
             let lens = Lens::new(camera, self.glyphs.tolerance);
             let bound = ScreenBound { nearest: lens.nearest(near.level, &cloud, index), ..bound };
@@ -282,7 +284,7 @@ impl<G: Glyph> Draw for Solids<G> {
     }
 
     fn scratch(&self, gpu: &Gpu, pool: &mut Pool, _records: u32) -> Result<wgpu::Buffer, Error> {
-        pool.storage(gpu, "Solids::large", 16 + FACETS * FACET_BYTES + BLOCKS * 8)
+        pool.storage(gpu, "Solids::large", 16 + (BLOCKS + 1) * BLOCK_BYTES)
     }
 
     fn draw(&self, work: &mut Work<'_>, place: &Place<'_>, frame: &mut Frame) {

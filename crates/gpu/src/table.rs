@@ -53,6 +53,12 @@ impl Table {
         self.known.get(brick as usize).copied().unwrap_or_default()
     }
 
+    /// How many pixels lie in the rectangle around a brick.
+    pub(crate) fn pixels(&self, brick: u32) -> u64 {
+        let (Known::Plain(run) | Known::Close(run)) = self.known(brick) else { return 0 };
+        self.runs.get(run as usize).map_or(0, Run::pixels)
+    }
+
     /// Finds the runs of bricks.
     pub(crate) fn learn<R: Record>(
         &mut self,
