@@ -15,9 +15,9 @@ use gpu::{bits, differing, open};
 use puncta::{
     Brick, Bricks, CpuRenderer, Cuboid, Depth, FrustumCull, Glyphs, Gpu, GpuConfig, GpuRenderer,
     Grid, GridConfig, Picture, Pipeline, Scene, View,
-    avc::{Block, BlockWorld, Filling, Mesh, Node, Sight},
+    avc::{Arc, Block, BlockWorld, Filling, Mesh, Node, Sight},
     core::Aabb,
-    gpu::{Extent, Solids},
+    gpu::{Extent, Solids, wgpu},
 };
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -90,9 +90,9 @@ fn twins_agree<G: Sample>() {
 }
 
 /// Pictures of every `step`-th scene, smaller by a factor along each side. Each covers so many pixels.
-fn pictures_agree<G: Sample>(extent: Extent, (step, factor): (usize, u32), least: usize) {
-    let Some(gpu) = open(extent) else { return };
-    let mut pipeline = draws::<G>(&gpu);
+fn pictures_agree<G: Sample>(gpu: Option<&Gpu>, (step, factor): (usize, u32), least: usize) {
+    let Some(gpu) = gpu else { return };
+    let mut pipeline = draws::<G>(gpu);
     let (mut pixels, mut other) = (0, 0);
     for (name, mut scene, view) in scenes::<G>().into_iter().step_by(step) {
         let size = (view.width() / factor, view.height() / factor);
@@ -186,17 +186,28 @@ macro_rules! glyphs {
 
         #[test]
         fn pictures_agree_with_the_reference() {
-            pictures_agree::<$glyph>(Extent::Full, ($step, $factor), $covered);
+            pictures_agree::<$glyph>(gpu::gpu(), ($step, $factor), $covered);
         }
 
         #[test]
         fn pictures_of_core_webgpu_agree_with_the_reference() {
-            pictures_agree::<$glyph>(Extent::Core, (3 * $step, $factor), $covered);
+            let gpu = open(Extent::Core);
+            pictures_agree::<$glyph>(gpu.as_ref(), (3 * $step, $factor), $covered);
         }
     })+ };
 }
 
 solids::all_glyphs!(glyphs);
+
+/// Where a group cannot keep its forms, each lane draws a record of its own.
+#[test]
+fn groups_may_share_little() {
+    let Some(_) = gpu::gpu() else { return };
+    let limits = wgpu::Limits { max_compute_workgroup_storage_size: 1024, ..Default::default() };
+    let gpu = gpu::own_device(&limits);
+    pictures_agree::<Node>(Some(&gpu), (6, 2), 50);
+    pictures_agree::<Arc>(Some(&gpu), (6, 2), 50);
+}
 
 /// A world of some caves, and views of it from outside and from within a cave.
 fn world() -> (BlockWorld, Vec<View>) {

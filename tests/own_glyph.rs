@@ -9,12 +9,13 @@
     reason = "a test may panic and talk, its numbers are small, and it shares parts with others"
 )]
 
-use glam::DVec3;
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3};
 use marker::Marker;
 use puncta::{
     CpuRenderer, Depth, FrustumCull, Glyph, Glyphs, GpuConfig, GpuRenderer, Grid, GridConfig,
     Pipeline, Record, Scene, Shading, View,
-    avc::{Mesh, Sight},
+    avc::{Cloud, Fault, Mesh, Sight, Size},
     shade_glyphs,
 };
 use rand::{RngExt, SeedableRng};
@@ -102,4 +103,51 @@ fn it_is_drawn_alike_on_both() {
     let other = gpu::differing(&pipeline.render(&scene, &grid, &view).unwrap(), &picture);
     println!("{other} of {} pixels differ", 320 * 240);
     assert!(other <= 1, "{other} pixels differ");
+}
+
+/// A marker whose shader uses a name that is taken.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(transparent)]
+struct Clash(Marker);
+
+impl Record for Clash {
+    fn position(&self) -> Vec3 {
+        self.0.position()
+    }
+
+    fn radius(&self) -> f32 {
+        self.0.radius()
+    }
+}
+
+impl Glyph for Clash {
+    type Style = f32;
+    type Form<'a> = ();
+    const WGSL: &'static str = "fn place() {}";
+
+    fn form<'a>(_: &Cloud<'a, Self>, _: usize, _: &Sight) {}
+
+    fn size((): &()) -> Size {
+        Size::NOTHING
+    }
+
+    fn vertex((): &(), _: u32) -> Vec3 {
+        Vec3::ZERO
+    }
+
+    fn triangle((): &(), _: u32) -> [u32; 3] {
+        [0; 3]
+    }
+
+    fn fault(_: &Cloud<'_, Self>, _: usize) -> Option<Fault> {
+        None
+    }
+}
+
+#[test]
+fn names_that_are_taken_are_told() {
+    let Some(gpu) = gpu::gpu() else { return };
+    let clash = GpuRenderer::of(gpu, Glyphs::<Clash>::new(0.5), GpuConfig::default());
+    let error = clash.unwrap_err().to_string();
+    assert!(error.contains("redefinition of `place`"), "{error}");
 }

@@ -39,8 +39,7 @@ use std::fmt::{self, Debug};
 ///
 /// They read by `word(at, k)` and `real(at, k)` the `k`-th word of a record, by `style_word(k)` and
 /// `style_real(k)` that of [`Glyph::Style`], and by `table_word(i)` and `table_real(i)` the words of
-/// [`Glyphs::table`]. `ring`, `sides` and `circle` are those of this crate. A `Form` has at most 240
-/// bytes, as 64 of them are kept side by side.
+/// [`Glyphs::table`]. `ring`, `sides` and `circle` are those of this crate.
 pub trait Glyph: Record + Pod {
     /// What all records share: sizes, what is selected, when to draw what. A multiple of 4 bytes.
     type Style: Pod + Send + Sync + Debug + PartialEq;

@@ -154,6 +154,11 @@ impl Gpu {
         }
     }
 
+    /// The bytes that the lanes of a group may share.
+    pub(crate) fn group_bytes(&self) -> u32 {
+        self.device.limits().max_compute_workgroup_storage_size
+    }
+
     /// The most bytes that a shader sees in one piece.
     pub(crate) fn binding_bytes_max(&self) -> u64 {
         let limits = self.device.limits();

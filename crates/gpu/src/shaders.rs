@@ -106,14 +106,16 @@ fn drawing() -> Vec<(String, String, Capabilities)> {
                 all.push((format!("{name} {part} {word}"), source, words));
             }
         };
-        glyph("arcs", solids::sources::<Arc>(visibility));
-        glyph("arrows", solids::sources::<Arrow>(visibility));
-        glyph("blocks", solids::sources::<Block>(visibility));
-        glyph("cuboids", solids::sources::<Cuboid>(visibility));
-        glyph("discs", solids::sources::<Disc>(visibility));
-        glyph("nodes", solids::sources::<Node>(visibility));
-        glyph("polygons", solids::sources::<Polygon>(visibility));
-        glyph("prisms", solids::sources::<Prism>(visibility));
+        glyph("arcs", solids::sources::<Arc>(visibility, 16_384));
+        // As where groups cannot share forms.
+        glyph("arcs alone", solids::sources::<Arc>(visibility, 1024));
+        glyph("arrows", solids::sources::<Arrow>(visibility, 16_384));
+        glyph("blocks", solids::sources::<Block>(visibility, 16_384));
+        glyph("cuboids", solids::sources::<Cuboid>(visibility, 16_384));
+        glyph("discs", solids::sources::<Disc>(visibility, 16_384));
+        glyph("nodes", solids::sources::<Node>(visibility, 16_384));
+        glyph("polygons", solids::sources::<Polygon>(visibility, 16_384));
+        glyph("prisms", solids::sources::<Prism>(visibility, 16_384));
     }
     all
 }
@@ -230,6 +232,20 @@ fn everything_of_glyphs_can_be_built() {
         let (gpu, glyphs) = (noop(features), Glyphs::<Cuboid>::new([]));
         GpuRenderer::of(&gpu, glyphs, GpuConfig::default()).unwrap();
     }
+}
+
+/// Forms are shared if there is room for 64 of them, and not otherwise.
+#[test]
+fn forms_are_shared_where_there_is_room() {
+    let visibility = shader!("visibility_narrow");
+    // An arc has 11 words, and pairs of words are aligned.
+    for (bytes, is_shared) in [(16_384, true), (64 * 52, true), (64 * 52 - 1, false), (0, false)] {
+        let [all, seen, large] = solids::sources::<Arc>(visibility, bytes);
+        assert_eq!(all.contains("array<Form, 64>"), is_shared, "{bytes}");
+        assert_eq!(seen.contains("array<Form, 64>"), is_shared);
+        assert!(!large.contains("array<Form, 64>"));
+    }
+    assert!(!solids::sources::<Cuboid>(visibility, 16_384)[0].contains("array<Form, 64>"));
 }
 
 #[test]

@@ -27,6 +27,7 @@ use puncta_avc::{Glyph, Glyphs, Lens, Level, Levels, PRELUDE, Surface};
 use puncta_core::{Brick, Camera, Content, NO_RECORD, Picture, Scene, ScreenBound};
 use rayon::prelude::*;
 use std::{fmt, ops::Range};
+use wgpu::naga;
 
 /// By how much a ball is larger than what it holds: more than rounding.
 const AROUND: f64 = 1.00001;
@@ -74,13 +75,16 @@ pub(crate) fn glyph_source<G: Glyph>() -> String {
 }
 
 /// The shaders of a glyph: what draws chunks, what does so for records that were seen before, and what
-/// draws blocks of large triangles.
-pub(crate) fn sources<G: Glyph>(visibility: &str) -> [String; 3] {
+/// draws blocks of large triangles. Groups may keep so many bytes.
+pub(crate) fn sources<G: Glyph>(visibility: &str, group_bytes: u32) -> [String; 3] {
     let before = shader!("camera", "disc", "work", "place");
     let glyph = glyph_source::<G>();
+    // A group keeps 64 forms, and where their triangles end.
+    let can_share =
+        form_bytes(&glyph).is_some_and(|bytes| bytes.saturating_add(4) <= group_bytes / 64);
     let after = shader!("glyph_large", "glyph_facet", "glyph_triangle");
     let common = [before, visibility, &glyph, after].concat();
-    let draw = if G::HAS_FEW_TRIANGLES {
+    let draw = if G::HAS_FEW_TRIANGLES || !can_share {
         shader!("glyph", "glyph_alone")
     } else {
         shader!("glyph", "glyph_together")
@@ -90,12 +94,21 @@ pub(crate) fn sources<G: Glyph>(visibility: &str) -> [String; 3] {
     [all, seen, common + shader!("glyph_blocks")]
 }
 
+/// The bytes of a `Form` in memory, if there is one.
+fn form_bytes(source: &str) -> Option<u32> {
+    let module = naga::front::wgsl::parse_str(source).ok()?;
+    let mut layouter = naga::proc::Layouter::default();
+    layouter.update(module.to_ctx()).ok()?;
+    let is_form = |(_, ty): &(_, &naga::Type)| ty.name.as_deref() == Some("Form");
+    module.types.iter().find(is_form).map(|(form, _)| layouter[form].to_stride())
+}
+
 /// The shader that counts blocks.
 pub(crate) const OVER_BLOCKS: &str = shader!("camera", "work", "glyph_large", "glyph_over");
 
 impl<G: Glyph> Solids<G> {
     pub(crate) fn new(gpu: &Gpu, glyphs: Glyphs<G>) -> Result<Self, Error> {
-        let [all, seen, blocks] = sources::<G>(gpu.visibility());
+        let [all, seen, blocks] = sources::<G>(gpu.visibility(), gpu.group_bytes());
         gpu.guard("pipelines", || {
             let kernel = |label, source: &str, entry| Kernel::new(gpu, label, (source, entry), &[]);
             Self {
