@@ -24,15 +24,9 @@ struct Chunk {
     records: u32,
 }
 
-struct Tile {
-    deepest: f32,
-    shallowest: f32,
-}
-
 @group(0) @binding(3) var<storage, read> pieces: array<Piece>;
 @group(0) @binding(5) var<storage, read_write> chunks: array<Chunk>;
 @group(0) @binding(7) var<storage, read_write> counts: Counts;
-@group(0) @binding(8) var<storage, read> tiles: array<Tile>;
 // By brick, whether it was drawn in this picture, and in the one before.
 @group(0) @binding(10) var<storage, read_write> drawn: array<u32>;
 @group(0) @binding(12) var<storage, read> drawn_before: array<u32>;
@@ -57,7 +51,7 @@ fn cull(
     if low(runs[piece.run].columns) > high(runs[piece.run].columns) {
         return;
     }
-    if (piece.flags & IS_TESTED) != 0u && is_hidden(piece.run) {
+    if (piece.flags & IS_TESTED) != 0u && is_hidden(runs[piece.run].columns, runs[piece.run].rows, runs[piece.run].nearest) {
         return;
     }
     drawn[brick] = 1u;
@@ -73,20 +67,4 @@ fn cull(
         let count = min(piece.count - i * CHUNK, CHUNK);
         chunks[start + i] = Chunk(piece.run, (piece.slot + i * CHUNK) | ((count - 1u) << 26u));
     }
-}
-
-// Whether all tiles around a brick are nearer. Equal is not enough: of two records at one depth, the
-// one with the lower id is shown.
-fn is_hidden(index: u32) -> bool {
-    let nearest = runs[index].nearest;
-    let columns = vec2(low(runs[index].columns), high(runs[index].columns)) / TILE;
-    let rows = vec2(low(runs[index].rows), high(runs[index].rows)) / TILE;
-    for (var row = rows.x; row <= rows.y; row++) {
-        for (var column = columns.x; column <= columns.y; column++) {
-            if !(tiles[row * camera.across + column].deepest < nearest) {
-                return false;
-            }
-        }
-    }
-    return true;
 }

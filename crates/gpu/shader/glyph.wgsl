@@ -13,13 +13,7 @@ struct Chunk {
     records: u32,
 }
 
-struct Tile {
-    deepest: f32,
-    shallowest: f32,
-}
-
 @group(0) @binding(5) var<storage, read> chunks: array<Chunk>;
-@group(0) @binding(8) var<storage, read> tiles: array<Tile>;
 
 const SLOTS: u32 = 0x3ffffffu;
 
@@ -36,25 +30,12 @@ const SPENT_MAX: u32 = 16384u;
 fn look(run: Run, at: u32, form: ptr<function, Form>) -> u32 {
     let ball = glyph_ball(at);
     let disc = place(run, vec4(ball.xyz, ball.w * AROUND));
-    if low(disc.columns) > high(disc.columns) || is_hidden(disc) {
+    let nearest = nearest_of(disc.depth, disc.radius);
+    if low(disc.columns) > high(disc.columns) || is_hidden(disc.columns, disc.rows, nearest) {
         return 0u;
     }
     *form = glyph_form(at, sight_of(run, glyph_position(at)));
     return glyph_size(*form).y;
-}
-
-fn is_hidden(disc: Disc) -> bool {
-    let nearest = nearest_of(disc.depth, disc.radius);
-    let columns = vec2(low(disc.columns), high(disc.columns)) / TILE;
-    let rows = vec2(low(disc.rows), high(disc.rows)) / TILE;
-    for (var row = rows.x; row <= rows.y; row++) {
-        for (var column = columns.x; column <= columns.y; column++) {
-            if !(tiles[row * camera.across + column].deepest < nearest) {
-                return false;
-            }
-        }
-    }
-    return true;
 }
 
 // Whether this lane draws a triangle of so many pixels itself.

@@ -5,17 +5,11 @@ struct Chunk {
     records: u32,
 }
 
-struct Tile {
-    deepest: f32,
-    shallowest: f32,
-}
-
 @group(0) @binding(3) var<storage, read> spheres: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read> ids: array<u32>;
 @group(0) @binding(5) var<storage, read> chunks: array<Chunk>;
 @group(0) @binding(6) var<storage, read_write> discs: array<Disc>;
 @group(0) @binding(7) var<storage, read_write> counts: Counts;
-@group(0) @binding(8) var<storage, read> tiles: array<Tile>;
 
 const SLOTS: u32 = 0x3ffffffu;
 
@@ -31,7 +25,9 @@ fn set_up(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_ind
 
 fn emit(run: u32, slot: u32) {
     var disc = place(runs[run], spheres[slot]);
-    if low(disc.columns) > high(disc.columns) || is_hidden(disc) {
+    // As `nearest_depth` of the core.
+    let nearest = disc.depth - disc.radius - 1e-6 * (abs(disc.depth) + disc.radius);
+    if low(disc.columns) > high(disc.columns) || is_hidden(disc.columns, disc.rows, nearest) {
         return;
     }
     disc.slot = slot;
@@ -42,19 +38,4 @@ fn emit(run: u32, slot: u32) {
     } else {
         discs[atomicAdd(&counts.large, 1u)] = disc;
     }
-}
-
-fn is_hidden(disc: Disc) -> bool {
-    // As `nearest_depth` of the core.
-    let nearest = disc.depth - disc.radius - 1e-6 * (abs(disc.depth) + disc.radius);
-    let columns = vec2(low(disc.columns), high(disc.columns)) / TILE;
-    let rows = vec2(low(disc.rows), high(disc.rows)) / TILE;
-    for (var row = rows.x; row <= rows.y; row++) {
-        for (var column = columns.x; column <= columns.y; column++) {
-            if !(tiles[row * camera.across + column].deepest < nearest) {
-                return false;
-            }
-        }
-    }
-    return true;
 }

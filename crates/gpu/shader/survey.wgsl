@@ -1,10 +1,5 @@
 // What the bricks that are left could still change: as `survey.rs` of the CPU's renderer.
 
-struct Tile {
-    deepest: f32,
-    shallowest: f32,
-}
-
 struct Left {
     run: u32,
     // The view depth behind which the brick has no surface.
@@ -14,7 +9,6 @@ struct Left {
 @group(0) @binding(3) var<storage, read> left: array<Left>;
 @group(0) @binding(4) var<storage, read_write> gains: array<f32>;
 @group(0) @binding(7) var<storage, read_write> counts: Counts;
-@group(0) @binding(8) var<storage, read> tiles: array<Tile>;
 // For each tile, the least depth at which a brick that is left begins, in bits that keep the order.
 @group(0) @binding(10) var<storage, read_write> outlook: array<atomic<u32>>;
 
@@ -65,18 +59,7 @@ fn glance(
         return;
     }
     let run = left[index].run;
-    let nearest = runs[run].nearest;
-    let columns = vec2(low(runs[run].columns), high(runs[run].columns)) / TILE;
-    let rows = vec2(low(runs[run].rows), high(runs[run].rows)) / TILE;
-    gains[index] = 0.0;
-    for (var row = rows.x; row <= rows.y; row++) {
-        for (var column = columns.x; column <= columns.y; column++) {
-            if !(tiles[row * camera.across + column].deepest < nearest) {
-                gains[index] = 1.0;
-                return;
-            }
-        }
-    }
+    gains[index] = f32(!is_hidden(runs[run].columns, runs[run].rows, runs[run].nearest));
 }
 
 fn gain(brick: Left) -> f32 {

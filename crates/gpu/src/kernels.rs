@@ -22,14 +22,15 @@ pub(crate) struct Kernels {
 }
 
 const TILES: &str = shader!("camera", "visibility_read", "tiles");
-pub(crate) const CULL: &str = shader!("camera", "disc", "work", "place", "cull");
-pub(crate) const SET_UP: &str = shader!("camera", "disc", "work", "place", "setup", "recall");
+pub(crate) const CULL: &str = shader!("camera", "disc", "work", "place", "hidden", "cull");
+pub(crate) const SET_UP: &str =
+    shader!("camera", "disc", "work", "place", "hidden", "setup", "recall");
 pub(crate) const ARGUMENTS: &str = shader!("work", "arguments");
 const SEEN: &str = shader!("camera", "visibility_read", "seen");
 const CLAIM: &str = shader!("camera", "claim");
 pub(crate) const PATCH: &str = shader!("camera", "patch");
 pub(crate) const SURVEY: &str =
-    shader!("camera", "disc", "work", "place", "visibility_read", "survey");
+    shader!("camera", "disc", "work", "place", "hidden", "visibility_read", "survey");
 
 /// All of these, to be tested.
 #[cfg(test)]

@@ -85,9 +85,9 @@ pub(crate) fn sources<G: Glyph>(visibility: &str, group_bytes: u32) -> [String; 
     let after = shader!("glyph_large", "glyph_facet", "glyph_triangle");
     let common = [before, visibility, &glyph, after].concat();
     let draw = if G::HAS_FEW_TRIANGLES || !can_share {
-        shader!("glyph", "glyph_alone")
+        shader!("hidden", "glyph", "glyph_alone")
     } else {
-        shader!("glyph", "glyph_together")
+        shader!("hidden", "glyph", "glyph_together")
     };
     let wanted = [shader!("glyph_any"), shader!("glyph_seen")];
     let [all, seen] = wanted.map(|wanted| [&common, draw, wanted].concat());
