@@ -15,7 +15,7 @@ use gpu::{bits, differing, open};
 use puncta::{
     Brick, Bricks, CpuRenderer, Cuboid, Depth, FrustumCull, Glyphs, Gpu, GpuConfig, GpuRenderer,
     Grid, GridConfig, Picture, Pipeline, Scene, View,
-    avc::{Arc, Block, BlockWorld, Filling, Mesh, Node, Sight},
+    avc::{Arc, Block, BlockWorld, Filling, Mesh, Node, Polygon, PolygonSet, Sight},
     core::Aabb,
     gpu::{Extent, Solids, wgpu},
 };
@@ -25,6 +25,7 @@ use solids::{
     Reference,
     scenes::{Sample, cloud, scenes},
 };
+use std::f64::consts::TAU;
 
 mod gpu;
 mod solids;
@@ -369,27 +370,61 @@ fn large_glyphs_are_drawn_whole() {
     }
 }
 
-/// More large triangles in one brick than the device has room for: the CPU draws them.
+/// More large triangles in one brick than the device has room for: the CPU draws them. Whether there is
+/// room for what is seen depends on the order.
 #[test]
 fn what_there_is_no_room_for_is_drawn() {
     let mut random = Pcg64Mcg::seed_from_u64(72);
-    let mut records = cloud::<Cuboid>(&mut random, 30_000, 0.1, [0.5, 0.6]);
-    // The nearest last: if anything is missed, it is what should be seen.
+    let mut records = cloud::<Cuboid>(&mut random, 20_000, 0.1, [0.5, 0.6]);
     let eye = Vec3::new(7.0, 5.0, 3.0);
     let distance = |cuboid: &Cuboid| Vec3::from(cuboid.center).distance(eye);
-    records.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
-    let scene = Scene::new(records);
+    records.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     let bounds = Aabb { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) };
-    let bricks = vec![Brick { records: 0..30_000, bounds, radius_max: 1.0, density: 1.0 }];
+    let bricks = vec![Brick { records: 0..20_000, bounds, radius_max: 1.0, density: 1.0 }];
     let view = View::look_at(eye.as_dvec3(), DVec3::ZERO, DVec3::Z).unwrap();
     let view = view.with_size(192, 192).unwrap().with_perspective(0.05).unwrap();
-    let cpu = Pipeline::new((), CpuRenderer::of(Cuboid::glyphs()));
-    let expected = { cpu }.render(&scene, &bricks, &view).unwrap();
-    for extent in [Extent::Full, Extent::Core] {
-        let Some(gpu) = open(extent) else { return };
-        let renderer = GpuRenderer::of(&gpu, Cuboid::glyphs(), GpuConfig::default()).unwrap();
-        let picture = Pipeline::new((), renderer).render(&scene, &bricks, &view).unwrap();
-        assert!(picture.covered_pixels() > 2000);
-        assert_eq!(differing(&picture, &expected), 0);
+    for nearest_first in [true, false] {
+        let scene = Scene::new(records.clone());
+        let mut cpu = Pipeline::new((), CpuRenderer::of(Cuboid::glyphs()));
+        let expected = cpu.render(&scene, &bricks, &view).unwrap();
+        for extent in [Extent::Full, Extent::Core] {
+            let Some(gpu) = open(extent) else { return };
+            let renderer = GpuRenderer::of(&gpu, Cuboid::glyphs(), GpuConfig::default()).unwrap();
+            let mut pipeline = Pipeline::new((), renderer);
+            let picture = pipeline.render(&scene, &bricks, &view).unwrap();
+            assert!(picture.covered_pixels() > 2000);
+            let other = differing(&picture, &expected);
+            assert!(other <= 1, "{extent:?}, {nearest_first}: {other} pixels differ");
+            // What was seen is drawn first now: a first step shows all of it.
+            let mut steps = pipeline.progressive(&scene, &bricks, &view, 1).unwrap();
+            steps.next().unwrap().unwrap();
+            assert_eq!(differing(&steps.picture().unwrap(), &picture), 0);
+        }
+        records.reverse();
     }
+}
+
+/// A record of more triangles than a group of lanes may go through: the CPU draws it.
+#[test]
+fn records_of_very_many_triangles_are_drawn() {
+    let Some(gpu) = gpu::gpu() else { return };
+    let corner = |k: u32| {
+        let (angle, radius) = (f64::from(k) / 120_000.0 * TAU, f64::from(9 + k % 2) * 0.1);
+        [radius * angle.cos(), radius * angle.sin()]
+    };
+    let mut set = PolygonSet::default();
+    set.push(&[(0..120_000).map(corner).collect::<Vec<_>>()], 0.0, 0.3).unwrap();
+    set.push(&[[[-0.2, -0.2], [0.3, -0.2], [0.0, 0.2]]], 0.4, 0.1).unwrap();
+    let glyphs = Glyphs::<Polygon>::new([]).with_table(set.table);
+    let mut scene = Scene::new(set.records);
+    let grid = Grid::sort_scene(&mut scene, &GridConfig::longest_side(1)).unwrap();
+    let view = View::look_at(DVec3::new(20.0, 10.0, 25.0), DVec3::ZERO, DVec3::Z).unwrap();
+    let view = view.with_size(160, 120).unwrap().with_perspective(0.07).unwrap();
+    let mut cpu = Pipeline::new((), CpuRenderer::of(glyphs.clone()));
+    let expected = cpu.render(&scene, &grid, &view).unwrap();
+    assert_eq!(expected.visible_records().len(), 2);
+    let renderer = GpuRenderer::of(gpu, glyphs, GpuConfig::default()).unwrap();
+    let picture = Pipeline::new((), renderer).render(&scene, &grid, &view).unwrap();
+    let other = differing(&picture, &expected);
+    assert!(other <= 1, "{other} of {} pixels", picture.id.len());
 }

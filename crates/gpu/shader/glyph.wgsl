@@ -20,10 +20,11 @@ const SLOTS: u32 = 0x3ffffffu;
 // By how much a ball is larger than what it holds: more than rounding.
 const AROUND: f32 = 1.00001;
 
-// How many pixels this lane has looked at, and the most: some drivers end a shader that goes through loops
-// more than 65535 times. What is more is left as if it were large.
+// How many pixels this lane has drawn itself, and how many blocks it has left. Of these and of triangles
+// there may be so many, as `solids.rs` says: drivers end a shader that takes too long. Pixels that are more
+// are left, too; of what else is more, the brick is missed.
 var<private> spent: u32;
-const SPENT_MAX: u32 = 16384u;
+var<private> left: u32;
 
 // How many triangles of a record are to be drawn, and its form: none if it is hidden or covers no pixel's
 // centre.
@@ -31,7 +32,12 @@ fn look(run: Run, at: u32, form: ptr<function, Form>) -> u32 {
     let ball = glyph_ball(at);
     let disc = place(run, vec4(ball.xyz, ball.w * AROUND));
     let nearest = nearest_of(disc.depth, disc.radius);
-    if low(disc.columns) > high(disc.columns) || is_hidden(disc.columns, disc.rows, nearest) {
+    let first = vec2(low(disc.columns), low(disc.rows)) / TILE;
+    let last = vec2(high(disc.columns), high(disc.rows)) / TILE;
+    let sides = last + 1u - first;
+    let is_tested = sides.x * sides.y <= TILES_MAX;
+    if low(disc.columns) > high(disc.columns)
+        || (is_tested && is_hidden(disc.columns, disc.rows, nearest)) {
         return 0u;
     }
     *form = glyph_form(at, sight_of(run, glyph_position(at)));
@@ -56,15 +62,28 @@ fn draw_small(facet: Facet, triangle: Triangle) {
     }
 }
 
-// Leaves a triangle to be drawn block by block.
-fn leave(run: u32, at: u32, number: u32, triangle: Triangle) {
-    let sides = vec2<u32>(triangle.last - triangle.first) / BLOCK + 1u;
-    let wanted = select(0u, sides.x * sides.y, triangle.area > 0u);
-    // Once there is no more room, nothing is added: what is missing is known.
-    let is_full = atomicLoad(&large.blocks) > room();
+// The largest side of a block, in pixels, of a triangle that is not large for one.
+const BLOCK: u32 = 64u;
+
+// Leaves a triangle to be drawn block by block: 16 at most. Those that are drawn first are drawn again in
+// the second pass.
+fn leave(index: u32, run: Run, at: u32, triangle: Triangle) {
+    let size = vec2<u32>(triangle.last + 1 - triangle.first);
+    let side = max(BLOCK, (max(size.x, size.y) + 3u) / 4u);
+    let sides = (size + side - 1u) / side;
+    let wanted = select(sides.x * sides.y, 0u, round.pass_of_two == 1u);
+    left += wanted;
+    // Once there is no more room, nothing is added, so that no sum is too large for a word.
+    let is_full = left > LEFT_MAX || atomicLoad(&large.blocks) > room();
     let count = select(wanted, 0u, is_full);
     let slot = atomicAdd(&large.blocks, count);
+    if count < wanted || slot + count > room() {
+        miss(run.brick);
+    }
     for (var i = 0u; i < count; i++) {
-                large.list[min(slot + i, room())] = Block(run, at, number, (i % sides.x) | ((i / sides.x) << 16u));
+        let first = triangle.first + vec2<i32>(vec2(i % sides.x, i / sides.x) * side);
+        let last = min(first + i32(side) - 1, triangle.last);
+        let block = Block(index, at, pack(first.x, first.y), pack(last.x, last.y), triangle.names);
+        large.list[min(slot + i, room())] = block;
     }
 }

@@ -13,6 +13,10 @@ fn draw_glyphs(
     if lane <= (chunk.records >> 26u) && is_wanted(at) {
         count = look(run, at, &form);
     }
+    if count > TRIANGLES_MAX {
+        miss(run.brick);
+        return;
+    }
     let offset = glyph_position(at) - run.reference;
     for (var first = 0u; first < count; first += 32u) {
         // Which triangles are to be drawn here, and which are left: a bit for each. Most cover no pixel's
@@ -35,7 +39,7 @@ fn draw_glyphs(
         while others != 0u {
             let number = first + firstTrailingBit(others);
             others &= others - 1u;
-            leave(chunk.run, at, number, triangle_of(run, offset, form, number));
+            leave(chunk.run, run, at, triangle_of(run, offset, form, number));
         }
     }
 }

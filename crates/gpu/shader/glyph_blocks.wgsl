@@ -1,24 +1,22 @@
 // Blocks of large triangles, by a workgroup each.
 
-const ACROSS: u32 = 32768u;
-
 @compute @workgroup_size(64)
 fn draw_blocks(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
     let index = group.y * ACROSS + group.x;
-    let block = large.list[min(index, room())];
+    if index >= min(atomicLoad(&large.blocks), room()) {
+        return;
+    }
+    let block = large.list[index];
     let run = runs[block.run];
     let position = glyph_position(block.at);
     let form = glyph_form(block.at, sight_of(run, position));
-    let triangle = triangle_of(run, position - run.reference, form, block.number);
-    let first = triangle.first + vec2<i32>(vec2(low(block.place), high(block.place)) * BLOCK);
-    let last = min(first + i32(BLOCK) - 1, triangle.last);
-    if index < min(atomicLoad(&large.blocks), room()) {
-        let facet = facet_of(run, id_of(block.at), triangle);
-        draw_rows(facet, first + vec2(i32(lane & 7u), i32(lane >> 3u)), last);
-    }
+    let triangle = triangle_between(run, position - run.reference, form, block.names);
+    let first = vec2(low(block.first), high(block.first)) + vec2(lane & 7u, lane >> 3u);
+    let last = vec2(low(block.last), high(block.last));
+    draw_rows(facet_of(run, id_of(block.at), triangle), vec2<i32>(first), vec2<i32>(last));
 }
 
 // Draws every eighth pixel of every eighth row.

@@ -5,7 +5,11 @@
 
 fn is_wanted(at: u32) -> bool {
     let id = id_of(at);
-    let is_seen = (seen[id >> 5u] >> (id & 31u) & 1u) != 0u;
+    let is_seen = (seen[id >> 5u] & (1u << (id & 31u))) != 0u;
     atomicAdd(&large.recalled, select(0u, 1u - round.pass_of_two, is_seen));
     return is_seen;
+}
+
+fn miss(brick: u32) {
+    atomicStore(&large.missed, 1u);
 }

@@ -19,18 +19,23 @@ fn draw_glyphs(
         count = look(run, first + lane, &form);
     }
     forms[lane] = form;
-    scan(lane, count);
+    // Not so many that sums could be too large for a word.
+    scan(lane, min(count, 64u * TRIANGLES_MAX + 1u));
     let total = ends[63];
+    if total > 64u * TRIANGLES_MAX {
+        miss(run.brick);
+        return;
+    }
     for (var triangle = lane; triangle < total; triangle += 64u) {
         let owner = owner_of(triangle);
         let at = first + owner;
         let start = select(0u, ends[max(owner, 1u) - 1u], owner > 0u);
-        let number = triangle - start;
-        let seen = triangle_of(run, glyph_position(at) - run.reference, forms[owner], number);
+        let offset = glyph_position(at) - run.reference;
+        let seen = triangle_of(run, offset, forms[owner], triangle - start);
         if is_small(seen.area) {
             draw_small(facet_of(run, id_of(at), seen), seen);
         } else {
-            leave(chunk.run, at, number, seen);
+            leave(chunk.run, run, at, seen);
         }
     }
 }

@@ -35,6 +35,7 @@ fn corner(run: Run, offset: vec3<f32>) -> Corner {
 
 // A triangle of a record in the picture.
 struct Triangle {
+    names: vec3<u32>,
     a: Corner,
     b: Corner,
     c: Corner,
@@ -47,7 +48,11 @@ struct Triangle {
 
 // A triangle of a form whose record lies at an offset from the reference.
 fn triangle_of(run: Run, offset: vec3<f32>, form: Form, number: u32) -> Triangle {
-    let names = glyph_triangle(form, number);
+    return triangle_between(run, offset, form, glyph_triangle(form, number));
+}
+
+// The triangle between some vertices.
+fn triangle_between(run: Run, offset: vec3<f32>, form: Form, names: vec3<u32>) -> Triangle {
     // A loop, so that compilers see the code of a glyph once.
     var corners: array<Corner, 3>;
     for (var k = 0u; k < 3u; k++) {
@@ -67,7 +72,7 @@ fn triangle_of(run: Run, offset: vec3<f32>, form: Form, number: u32) -> Triangle
     let is_seen = ab.x * ac.y - ab.y * ac.x < 0.0 && all(first <= last);
     let end = select(first - 1, last, is_seen);
     let sides = vec2<u32>(end - first + 1);
-    return Triangle(a, b, c, first, end, sides.x * sides.y);
+    return Triangle(names, a, b, c, first, end, sides.x * sides.y);
 }
 
 fn facet_of(run: Run, id: u32, triangle: Triangle) -> Facet {

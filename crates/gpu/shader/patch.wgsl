@@ -1,4 +1,4 @@
-// Spheres that the CPU has drawn, in a rectangle of pixels: the nearer of these and what is there.
+// What the CPU has drawn, in a rectangle of pixels: the nearer of these and what is there.
 
 struct Patch {
     first: vec2<u32>,

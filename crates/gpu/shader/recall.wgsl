@@ -11,7 +11,7 @@ fn recall(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_ind
     }
     let slot = (chunk.records & SLOTS) + lane;
     let id = ids[slot];
-    if (seen[id >> 5u] >> (id & 31u) & 1u) == 0u {
+    if (seen[id >> 5u] & (1u << (id & 31u))) == 0u {
         return;
     }
     atomicAdd(&counts.recalled, 1u);

@@ -19,7 +19,7 @@ struct Counts {
     records: atomic<u32>,
     recalled: atomic<u32>,
     open: atomic<u32>,
-    // Blocks of large triangles for which there was no room, in a round.
+    // Whether anything was missed in any round: see `glyph_any.wgsl`.
     missed: atomic<u32>,
 }
 

@@ -58,7 +58,7 @@ impl<S> GpuRenderer<S> {
         Ok(close)
     }
 
-    /// Draws bricks by the CPU, where the device had no room for what is large. They were counted before.
+    /// Draws by the CPU what was missed of bricks. They were counted before.
     pub(crate) fn draw_missed<R: Record>(
         &mut self,
         content: &Content<'_, R>,
@@ -67,7 +67,8 @@ impl<S> GpuRenderer<S> {
     where
         S: Shape<R>,
     {
-        let mut indices: Vec<u32> = bricks.iter().map(VisibleBrick::index).collect();
+        let indices = bricks.iter().map(VisibleBrick::index).collect();
+        let mut indices = self.bench.missed(&self.gpu, indices)?;
         if self.config.skipping == Skipping::Hidden {
             indices = survey::glance(self, &indices)?;
         }
@@ -237,7 +238,9 @@ impl<S> GpuRenderer<S> {
             self.add(content, &mut batch, (run, records), IS_RECALLED)?;
         }
         self.flush(content, &mut batch)?;
-        Ok(self.bench.counted(&self.gpu)?.recalled.into())
+        let counted = self.bench.counted(&self.gpu)?;
+        // What is not whole is followed by a picture that is.
+        Ok(if counted.missed > 0 { 0 } else { counted.recalled.into() })
     }
 
     /// The set of ids in a picture; `None` if it would be too large.

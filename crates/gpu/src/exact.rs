@@ -1,8 +1,8 @@
 /*!
 What `f32` cannot draw, drawn by the CPU in `f64`.
 
-Such spheres and glyphs are larger than some hundred pixels, nearer than their own size, or cut by the near plane: few.
-What they show is made in one rectangle around them all, on all cores, and merged into the picture on
+Such spheres and glyphs are larger than some hundred pixels, nearer than their own size, or cut by the near
+plane: few. Glyphs that are too much for the device (`solids.rs`) are drawn here, too. What they show is made in one rectangle around them all, on all cores, and merged into the picture on
 the GPU.
 */
 

@@ -154,6 +154,11 @@ impl Gpu {
         }
     }
 
+    /// Whether a processor stands in for a GPU.
+    pub(crate) fn is_cpu(&self) -> bool {
+        self.device.adapter_info().device_type == wgpu::DeviceType::Cpu
+    }
+
     /// The bytes that the lanes of a group may share.
     pub(crate) fn group_bytes(&self) -> u32 {
         self.device.limits().max_compute_workgroup_storage_size

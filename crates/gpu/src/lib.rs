@@ -44,9 +44,10 @@ assert_eq!(rows, [
 2. Bricks behind what is drawn are dropped by a look at tiles of the picture, records that are hidden or
    cover no pixel's centre by another; what is left becomes discs (`cull.wgsl`, `setup.wgsl`).
 3. Discs become pixels in one of several ways ([`Setup`], [`Fragment`]), which all test the same ray
-   against the same sphere. Each writes a word that is larger the nearer the surface is, and of equal
-   depths the lower the id; the maximum stays. So the picture depends neither on the way nor on the
-   order.
+   against the same sphere. Glyphs become triangles: a lane draws those that are small, a group of lanes
+   each block of those that are large (`glyph.wgsl`). Each way writes a word that is larger the nearer
+   the surface is, and of equal depths the lower the id; the maximum stays. So the picture depends
+   neither on the way nor on the order.
 4. [`Renderer::survey`](puncta_core::Renderer::survey) finds what the bricks that are left can still
    change, as on the CPU: a picture that is settled is complete.
 

@@ -3,7 +3,7 @@ How much is drawn before what is left is tested again.
 
 A test finds bricks that are hidden by what is drawn: they are neither drawn nor brought. It costs a look
 at all tiles of the picture and the way back of its answer, which is worth some bricks. So there are some
-dozen tests where they find something, and ever fewer where they do not.
+dozen tests where they find something, more if bricks are large, and ever fewer where they do not.
 */
 
 /// The share of the bricks that are drawn before those that are left are tested for the first time, and
@@ -17,7 +17,7 @@ const LATER_SHARE: usize = 64;
 
 /// If less than this share of what is left turns out to be hidden, twice as much is drawn until the next
 /// test.
-const HIDDEN_SHARE: usize = 64;
+const HIDDEN_SHARE: usize = 16;
 
 /// How much of some bricks is drawn at once.
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +74,9 @@ mod tests {
         pace.adapt(0, 936);
         assert_eq!(pace.next(100, [1; 872].into_iter()), 128);
         assert_eq!(pace.next(100, [60; 872].into_iter()), 4);
-        pace.adapt(14, 872);
+        pace.adapt(54, 872);
+        assert_eq!(pace.next(100, [1; 818].into_iter()), 256);
+        pace.adapt(52, 818);
         assert_eq!(pace.next(100, [1; 858].into_iter()), 64);
     }
 

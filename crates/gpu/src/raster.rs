@@ -69,7 +69,7 @@ impl Raster {
 
     /// The largest number of pixels of a disc that is drawn by a compute shader.
     pub(crate) fn small(&self, gpu: &Gpu) -> u32 {
-        let is_cpu = gpu.device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+        let is_cpu = gpu.is_cpu();
         match self.setup {
             // One lane at a time or all at once: what is large for a lane differs.
             Setup::Compute if is_cpu => 1024,

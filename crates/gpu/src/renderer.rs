@@ -323,6 +323,7 @@ impl<S> GpuRenderer<S> {
         self.gpu.guard("counts", || {
             let mut work = Work::new(&self.gpu, "GpuRenderer::clear_counts");
             work.encoder.clear_buffer(&self.bench.counts, 0, None);
+            work.encoder.clear_buffer(&self.bench.missed, 0, None);
             work.submit();
         })
     }

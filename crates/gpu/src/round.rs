@@ -30,6 +30,9 @@ pub(crate) const CHUNKS_MAX: u32 = 60_000;
 /// How many records make a chunk.
 pub(crate) const CHUNK: u32 = 64;
 
+/// The bytes of the bits for what was missed.
+const MISSED_BYTES: u64 = 1 << 13;
+
 pub(crate) const IS_FIRST: u32 = 1;
 pub(crate) const IS_TESTED: u32 = 2;
 pub(crate) const IS_RECALLED: u32 = 4;
@@ -131,6 +134,8 @@ pub(crate) struct Bench {
     pub(crate) blocks: wgpu::Buffer,
     pub(crate) round: wgpu::Buffer,
     pub(crate) second: wgpu::Buffer,
+    /// Bits for bricks of which something was missed: several bricks share a bit.
+    pub(crate) missed: wgpu::Buffer,
     patch: wgpu::Buffer,
 }
 
@@ -144,6 +149,7 @@ impl Bench {
             blocks: crate::kernel::storage(gpu, "Bench::blocks", 64)?,
             round: round("Bench::round")?,
             second: round("Bench::second")?,
+            missed: crate::kernel::storage(gpu, "Bench::missed", MISSED_BYTES)?,
             patch: round("Bench::patch")?,
         })
     }
@@ -153,6 +159,15 @@ impl Bench {
         let bytes = size_of::<Counts>() as u64;
         let read = crate::kernel::read(gpu, &mut self.pool, &[(&self.counts, 0..bytes)])?;
         Ok(bytemuck::pod_read_unaligned(&read))
+    }
+
+    /// Which of some bricks may have missed something.
+    pub(crate) fn missed(&mut self, gpu: &Gpu, mut bricks: Vec<u32>) -> Result<Vec<u32>, Error> {
+        let read = crate::kernel::read(gpu, &mut self.pool, &[(&self.missed, 0..MISSED_BYTES)])?;
+        let bits = crate::survey::words(&read);
+        let is_set = |brick: u32| bits[(brick >> 5) as usize % bits.len()] >> (brick & 31) & 1 != 0;
+        bricks.retain(|&brick| is_set(brick));
+        Ok(bricks)
     }
 
     pub(crate) fn write_round(&self, gpu: &Gpu, data: RoundData) -> &wgpu::Buffer {

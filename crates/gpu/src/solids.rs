@@ -3,7 +3,9 @@ Records as glyphs: closed surfaces of triangles, which exist only while they are
 
 The shaders of a glyph are put together from its own WGSL and from what draws triangles (`glyph.wgsl`).
 Nothing is kept of a triangle that is small; large ones wait in a list of fixed size to be drawn block by
-block. The geometry is that of the CPU's twin, and so are its levels of detail, which belong to bricks.
+block. Where there is no room for more, or neighboring records have more triangles than a group should
+draw, the CPU draws the brick. The geometry is that of the CPU's twin, and so are its levels of detail,
+which belong to bricks.
 
 # How exact it is
 
@@ -36,9 +38,47 @@ const AROUND: f64 = 1.00001;
 /// far away.
 const HAIR: f64 = 1e-3;
 
-/// How many blocks of large triangles there is room for, and their bytes.
-const BLOCKS: u64 = 1 << 16;
-pub(crate) const BLOCK_BYTES: u64 = 16;
+/// The bytes of `Block` of `glyph_large.wgsl`.
+pub(crate) const BLOCK_BYTES: u64 = 32;
+
+/// How much one lane, or one list, may be given.
+#[derive(Clone, Copy, Debug)]
+struct Most {
+    /// Triangles that a lane goes through.
+    triangles: u32,
+    /// Pixels that it draws itself.
+    spent: u32,
+    /// Blocks that it leaves.
+    left: u32,
+    /// Tiles that it looks at to find whether its record is hidden.
+    tiles: u32,
+    /// Blocks for which there is room, at least.
+    blocks: u64,
+}
+
+impl Most {
+    /// On a GPU: some milliseconds of a lane.
+    const GPU: Self =
+        Self { triangles: 1 << 14, spent: 1 << 16, left: 1 << 13, tiles: 1 << 12, blocks: 1 << 18 };
+
+    /// Lavapipe ends a shader that has gone through loops 65,535 times. It counts for eight lanes
+    /// together: at worst they take turns. So this is at most 512 x 32 for triangles, whose corners and owners
+    /// are found in loops, 8 x 4096 + 8 x 512 for pixels and blocks, and 4096 + 64 for tiles.
+    const CPU: Self = Self { triangles: 512, spent: 4096, left: 512, tiles: 4096, blocks: 1 << 15 };
+
+    const fn of(is_cpu: bool) -> Self {
+        if is_cpu { Self::CPU } else { Self::GPU }
+    }
+
+    /// As constants of shaders.
+    fn source(self) -> String {
+        let Self { triangles, spent, left, tiles, blocks: _ } = self;
+        format!(
+            "const TRIANGLES_MAX: u32 = {triangles}u;\nconst SPENT_MAX: u32 = {spent}u;\n\
+             const LEFT_MAX: u32 = {left}u;\nconst TILES_MAX: u32 = {tiles}u;\n"
+        )
+    }
+}
 
 /// Draws records as glyphs.
 pub struct Solids<G: Glyph> {
@@ -76,14 +116,17 @@ pub(crate) fn glyph_source<G: Glyph>() -> String {
 
 /// The shaders of a glyph: what draws chunks, what does so for records that were seen before, and what
 /// draws blocks of large triangles. Groups may keep so many bytes.
-pub(crate) fn sources<G: Glyph>(visibility: &str, group_bytes: u32) -> [String; 3] {
+pub(crate) fn sources<G: Glyph>(
+    visibility: &str,
+    (is_cpu, group_bytes): (bool, u32),
+) -> [String; 3] {
     let before = shader!("camera", "disc", "work", "place");
     let glyph = glyph_source::<G>();
     // A group keeps 64 forms, and where their triangles end.
     let can_share =
         form_bytes(&glyph).is_some_and(|bytes| bytes.saturating_add(4) <= group_bytes / 64);
     let after = shader!("glyph_large", "glyph_facet", "glyph_triangle");
-    let common = [before, visibility, &glyph, after].concat();
+    let common = [before, visibility, &glyph, after, &Most::of(is_cpu).source()].concat();
     let draw = if G::HAS_FEW_TRIANGLES || !can_share {
         shader!("hidden", "glyph", "glyph_alone")
     } else {
@@ -94,21 +137,39 @@ pub(crate) fn sources<G: Glyph>(visibility: &str, group_bytes: u32) -> [String; 
     [all, seen, common + shader!("glyph_blocks")]
 }
 
-/// The bytes of a `Form` in memory, if there is one.
+/// The bytes of a `Form` in memory at most, if there is one.
 fn form_bytes(source: &str) -> Option<u32> {
     let module = naga::front::wgsl::parse_str(source).ok()?;
     let mut layouter = naga::proc::Layouter::default();
     layouter.update(module.to_ctx()).ok()?;
     let is_form = |(_, ty): &(_, &naga::Type)| ty.name.as_deref() == Some("Form");
-    module.types.iter().find(is_form).map(|(form, _)| layouter[form].to_stride())
+    let (form, _) = module.types.iter().find(is_form)?;
+    // A truth has one byte here, and four in the memory of a group.
+    Some(layouter[form].to_stride().saturating_add(bools(&module, form).saturating_mul(4)))
+}
+
+/// How many numbers of a type are truths.
+fn bools(module: &naga::Module, ty: naga::Handle<naga::Type>) -> u32 {
+    use naga::{ArraySize, ScalarKind, TypeInner};
+    match &module.types[ty].inner {
+        TypeInner::Scalar(scalar) => u32::from(scalar.kind == ScalarKind::Bool),
+        TypeInner::Vector { size, scalar } if scalar.kind == ScalarKind::Bool => *size as u32,
+        TypeInner::Array { base, size: ArraySize::Constant(count), .. } => {
+            bools(module, *base).saturating_mul(count.get())
+        }
+        TypeInner::Struct { members, .. } => {
+            members.iter().fold(0, |sum, it| bools(module, it.ty).saturating_add(sum))
+        }
+        _ => 0,
+    }
 }
 
 /// The shader that counts blocks.
-pub(crate) const OVER_BLOCKS: &str = shader!("camera", "work", "glyph_large", "glyph_over");
+pub(crate) const OVER_BLOCKS: &str = shader!("work", "glyph_large", "glyph_over");
 
 impl<G: Glyph> Solids<G> {
     pub(crate) fn new(gpu: &Gpu, glyphs: Glyphs<G>) -> Result<Self, Error> {
-        let [all, seen, blocks] = sources::<G>(gpu.visibility(), gpu.group_bytes());
+        let [all, seen, blocks] = sources::<G>(gpu.visibility(), (gpu.is_cpu(), gpu.group_bytes()));
         gpu.guard("pipelines", || {
             let kernel = |label, source: &str, entry| Kernel::new(gpu, label, (source, entry), &[]);
             Self {
@@ -157,12 +218,13 @@ impl<G: Glyph> Solids<G> {
         Ok(())
     }
 
-    /// Draws chunks once.
-    fn draw_once(&self, work: &mut Work<'_>, place: &Place<'_>, parts: (&Frame, &wgpu::Buffer)) {
-        let ((frame, round), bench) = (parts, place.bench);
+    /// Draws chunks, for the first or for the second time.
+    fn draw_once(&self, work: &mut Work<'_>, place: &Place<'_>, (frame, again): (&Frame, bool)) {
+        let bench = place.bench;
         let Some(common) = &self.common else { return };
-        // What was counted as recalled stays until it is added up.
-        work.encoder.clear_buffer(place.scratch, 0, Some(8));
+        // The second time, the same blocks are drawn: which ones have room is decided once.
+        let (round, start) = if again { (&bench.second, 4) } else { (&bench.round, 0) };
+        work.encoder.clear_buffer(place.scratch, start, Some(12 - start));
         let mut shared = vec![
             (0, frame.target.camera.as_entire_binding()),
             (1, place.runs.as_entire_binding()),
@@ -182,7 +244,10 @@ impl<G: Glyph> Solids<G> {
                 bindings.push((10, seen.as_entire_binding()));
                 &self.recall
             }
-            None => &self.draw,
+            None => {
+                bindings.push((12, bench.missed.as_entire_binding()));
+                &self.draw
+            }
         };
         kernel.run_indirect(work, &bindings, (&bench.arguments, 0));
         let counted = [
@@ -291,19 +356,19 @@ impl<G: Glyph> Draw for Solids<G> {
     }
 
     fn small(&self, gpu: &Gpu) -> u32 {
-        let is_cpu = gpu.device.adapter_info().device_type == wgpu::DeviceType::Cpu;
         // One lane at a time or all at once: what is large for a lane differs.
-        if is_cpu { 1024 } else { 128 }
+        if gpu.is_cpu() { 1024 } else { 128 }
     }
 
     fn scratch(&self, gpu: &Gpu, pool: &mut Pool, _records: u32) -> Result<wgpu::Buffer, Error> {
-        pool.storage(gpu, "Solids::large", 16 + (BLOCKS + 1) * BLOCK_BYTES)
+        let blocks = Most::of(gpu.is_cpu()).blocks;
+        pool.storage(gpu, "Solids::large", 16 + (blocks + 1) * BLOCK_BYTES)
     }
 
     fn draw(&self, work: &mut Work<'_>, place: &Place<'_>, frame: &mut Frame) {
-        self.draw_once(work, place, (frame, &place.bench.round));
+        self.draw_once(work, place, (frame, false));
         if frame.target.claim(work, place.claim) {
-            self.draw_once(work, place, (frame, &place.bench.second));
+            self.draw_once(work, place, (frame, true));
         }
     }
 }
