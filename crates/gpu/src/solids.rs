@@ -312,7 +312,7 @@ impl<G: Glyph> Shape<G> for Solids<G> {
     fn refine(&self, camera: &Camera, content: &Content<'_, G>, picture: &mut Picture) {
         let (lens, levels) =
             (Lens::new(camera, self.glyphs.tolerance), Levels::new(camera, content.bricks));
-        let width = picture.width as usize;
+        let size = [picture.width, picture.height];
         let cloud = self.glyphs.cloud(&content.scene.records);
         // The pixels of a record together, so that its surface is made once.
         let seen = |(pixel, &id): (usize, &u32)| (id != NO_RECORD).then_some((id, pixel));
@@ -323,18 +323,17 @@ impl<G: Glyph> Shape<G> for Solids<G> {
             let (id, _) = pixels[0];
             let mut surface = Surface::default();
             surface.fill(&lens, &cloud, id as usize, levels.of(id));
-            let depth = |&(_, pixel): &(u32, usize)| {
-                let (column, row) = ((pixel % width) as f64, (pixel / width) as f64);
-                surface.depth_around(column, row, HAIR).map(|depth| (pixel, depth))
-            };
-            pixels.iter().filter_map(depth).collect()
+            let pixels: Vec<usize> = pixels.iter().map(|(_, pixel)| *pixel).collect();
+            let depths = depths(&surface, &pixels, size);
+            pixels.into_iter().zip(depths).collect()
         };
-        let found: Vec<Vec<(usize, f64)>> =
+        let found: Vec<Vec<(usize, Option<f64>)>> =
             pixels.par_chunk_by(|a, b| a.0 == b.0).map(exact).collect();
         for (pixel, depth) in found.into_iter().flatten() {
             #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
-            let depth = depth as f32;
-            picture.depth[pixel] = depth;
+            if let Some(depth) = depth {
+                picture.depth[pixel] = depth as f32;
+            }
         }
     }
 }
@@ -373,6 +372,43 @@ impl<G: Glyph> Draw for Solids<G> {
     }
 }
 
+/// The view depths of a surface at some pixels, which are ascending, of a picture; where rays miss it, of a
+/// ray a hair away.
+///
+/// Facet by facet: a glyph may have a hundred thousand, of which each covers few of the pixels.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "all are inside")]
+fn depths(surface: &Surface, pixels: &[usize], size: [u32; 2]) -> Vec<Option<f64>> {
+    let width = size[0] as usize;
+    let mut depths = vec![None; pixels.len()];
+    let (Some(first), Some(last)) = (pixels.first(), pixels.last()) else { return depths };
+    let around = [first / width, last / width].map(|row| row as i64);
+    for facet in surface.facets() {
+        let spans = facet.spans(size);
+        let rows = spans.rows();
+        for row in rows[0].max(around[0])..=rows[1].min(around[1]) {
+            let [from, to] = spans.of(row as f64);
+            if from > to {
+                continue;
+            }
+            let of_row = facet.depth_of_row(row as f64);
+            let start = row as usize * width;
+            let place = pixels.partition_point(|&pixel| pixel < start + from as usize);
+            let covered = pixels[place..].iter().zip(&mut depths[place..]);
+            for (pixel, depth) in covered.take_while(|(pixel, _)| **pixel <= start + to as usize) {
+                let new = of_row.at((pixel - start) as f64);
+                *depth = Some(depth.map_or(new, |old: f64| old.min(new)));
+            }
+        }
+    }
+    for (&pixel, depth) in pixels.iter().zip(&mut depths) {
+        if depth.is_none() {
+            let (column, row) = ((pixel % width) as f64, (pixel / width) as f64);
+            *depth = surface.depth_around(column, row, HAIR);
+        }
+    }
+    depths
+}
+
 /// A glyph that the CPU draws.
 #[derive(Debug)]
 pub(crate) struct Solid {
@@ -405,6 +441,47 @@ impl Exact for Solid {
                 let pixel = &mut pixels[(column - i64::from(first)) as usize];
                 *pixel = key(depths.at(column as f64) as f32, self.id).max(*pixel);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use proptest::prelude::*;
+    use puncta_avc::{Arc, Cuboid, Disc};
+    use puncta_core::View;
+
+    fn agree<G: Glyph<Style = [u32; 0]>>(record: G, eye: DVec3) -> Result<(), TestCaseError> {
+        let view = View::look_at(eye, DVec3::ZERO, DVec3::Z).unwrap().with_size(33, 21).unwrap();
+        let camera = Camera::new(&view, DVec3::ZERO);
+        let glyphs = Glyphs::<G>::new([]);
+        let (lens, records) = (Lens::new(&camera, 0.1), [record]);
+        let mut surface = Surface::default();
+        surface.fill(&lens, &glyphs.cloud(&records), 0, Level::Record);
+        // Those of other records are not asked for.
+        let pixels: Vec<usize> = (0..33 * 21).filter(|pixel| pixel % 7 != 3).collect();
+        let found = depths(&surface, &pixels, [33, 21]);
+        for (pixel, found) in pixels.into_iter().zip(found) {
+            let (column, row) = ((pixel % 33) as f64, (pixel / 33) as f64);
+            prop_assert_eq!(found, surface.depth_around(column, row, HAIR), "{}", pixel);
+        }
+        Ok(())
+    }
+
+    proptest! {
+        /// Facet by facet and pixel by pixel, depths are the same.
+        #[test]
+        fn depths_are_those_of_each_pixel(
+            eye in [1.0..3.0, -3.0..3.0, -3.0..3.0_f64],
+            sides in [0.1_f32..2.0, 0.1_f32..2.0, 0.01_f32..1.0],
+        ) {
+            let (eye, [a, b, height]) = (DVec3::from(eye), sides);
+            agree(Cuboid::new([0.1, 0.2, 0.0], sides), eye)?;
+            agree(Disc::new([0.0; 3], [a, b, height], a), eye)?;
+            let arc = Arc { center: [0.0; 3], radii: [a * 0.3, a], turns: [0.1, b], height };
+            agree(arc, eye)?;
         }
     }
 }
