@@ -21,7 +21,7 @@ const SLOTS: u32 = 0x3ffffffu;
 const AROUND: f32 = 1.00001;
 
 // How many pixels this lane has drawn itself, and how many blocks it has left. Of these and of triangles
-// there may be so many, as `solids.rs` says: drivers end a shader that takes too long. Pixels that are more
+// there may be so many, as `solid_shaders.rs` says: drivers end a shader that takes too long. Pixels that are more
 // are left, too; of what else is more, the brick is missed.
 var<private> spent: u32;
 var<private> left: u32;

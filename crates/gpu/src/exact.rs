@@ -1,9 +1,9 @@
 /*!
 What `f32` cannot draw, drawn by the CPU in `f64`.
 
-Such spheres and glyphs are larger than some hundred pixels, nearer than their own size, or cut by the near
-plane: few. Glyphs that are too much for the device (`solids.rs`) are drawn here, too. What they show is made in one rectangle around them all, on all cores, and merged into the picture on
-the GPU.
+Such spheres and glyphs are larger than some hundred pixels, nearer than their own size, or cut by the
+near plane: few. Glyphs that are too much for the device (`solid_shaders.rs`) are drawn here, too. What
+they show is made in one rectangle around them all, on all cores, and merged into the picture on the GPU.
 */
 
 use bytemuck::{Pod, Zeroable};

@@ -4,7 +4,7 @@ use crate::{
     Error, GpuRenderer, Solids,
     kernel::{Kernel, Work, read, shader, storage},
     shape::{Draw, Shape},
-    solids::glyph_source,
+    solid_shaders::glyph_source,
     survey::words,
 };
 use bytemuck::{Pod, Zeroable};

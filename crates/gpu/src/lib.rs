@@ -99,6 +99,8 @@ mod shaded;
 #[cfg(test)]
 mod shaders;
 mod shape;
+mod solid_depths;
+mod solid_shaders;
 mod solids;
 mod spheres;
 mod store;

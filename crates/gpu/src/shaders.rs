@@ -9,7 +9,7 @@ use crate::{
     kernel::shader,
     kernels, raster,
     round::{CHUNK_BYTES, DISC_BYTES},
-    shade_pass, solids,
+    shade_pass, solid_shaders,
 };
 use naga::{
     Module,
@@ -77,7 +77,7 @@ const WIDE: Capabilities =
 
 /// Every module that is the same everywhere.
 fn core_sources() -> Vec<(&'static str, &'static str)> {
-    let others = [("compositor", compositor::SOURCE), ("over blocks", solids::OVER_BLOCKS)];
+    let others = [("compositor", compositor::SOURCE), ("over blocks", solid_shaders::OVER_BLOCKS)];
     kernels::SOURCES.into_iter().chain(shade_pass::SOURCES).chain(others).collect()
 }
 
@@ -106,16 +106,16 @@ fn drawing() -> Vec<(String, String, Capabilities)> {
                 all.push((format!("{name} {part} {word}"), source, words));
             }
         };
-        glyph("arcs", solids::sources::<Arc>(visibility, (true, 16_384)));
+        glyph("arcs", solid_shaders::sources::<Arc>(visibility, (true, 16_384)));
         // As where groups cannot share forms.
-        glyph("arcs alone", solids::sources::<Arc>(visibility, (true, 1024)));
-        glyph("arrows", solids::sources::<Arrow>(visibility, (true, 16_384)));
-        glyph("blocks", solids::sources::<Block>(visibility, (true, 16_384)));
-        glyph("cuboids", solids::sources::<Cuboid>(visibility, (true, 16_384)));
-        glyph("discs", solids::sources::<Disc>(visibility, (true, 16_384)));
-        glyph("nodes", solids::sources::<Node>(visibility, (true, 16_384)));
-        glyph("polygons", solids::sources::<Polygon>(visibility, (true, 16_384)));
-        glyph("prisms", solids::sources::<Prism>(visibility, (true, 16_384)));
+        glyph("arcs alone", solid_shaders::sources::<Arc>(visibility, (true, 1024)));
+        glyph("arrows", solid_shaders::sources::<Arrow>(visibility, (true, 16_384)));
+        glyph("blocks", solid_shaders::sources::<Block>(visibility, (true, 16_384)));
+        glyph("cuboids", solid_shaders::sources::<Cuboid>(visibility, (true, 16_384)));
+        glyph("discs", solid_shaders::sources::<Disc>(visibility, (true, 16_384)));
+        glyph("nodes", solid_shaders::sources::<Node>(visibility, (true, 16_384)));
+        glyph("polygons", solid_shaders::sources::<Polygon>(visibility, (true, 16_384)));
+        glyph("prisms", solid_shaders::sources::<Prism>(visibility, (true, 16_384)));
     }
     all
 }
@@ -166,7 +166,7 @@ fn structs_are_the_same_everywhere() {
         ("Tile", Some(8)),
         ("Shade", None),
         ("Entry", None),
-        ("Block", Some(solids::BLOCK_BYTES)),
+        ("Block", Some(solid_shaders::BLOCK_BYTES)),
     ];
     for (name, size) in sizes {
         let having = modules.iter().filter(|(_, module)| is_there(module, name));
@@ -240,12 +240,15 @@ fn forms_are_shared_where_there_is_room() {
     let visibility = shader!("visibility_narrow");
     // An arc has 9 words and two truths, and 4 bytes to be even; a truth counts for 5 bytes at most.
     for (bytes, is_shared) in [(16_384, true), (64 * 60, true), (64 * 48 - 1, false), (0, false)] {
-        let [all, seen, large] = solids::sources::<Arc>(visibility, (true, bytes));
+        let [all, seen, large] = solid_shaders::sources::<Arc>(visibility, (true, bytes));
         assert_eq!(all.contains("array<Form, 64>"), is_shared, "{bytes}");
         assert_eq!(seen.contains("array<Form, 64>"), is_shared);
         assert!(!large.contains("array<Form, 64>"));
     }
-    assert!(!solids::sources::<Cuboid>(visibility, (true, 16_384))[0].contains("array<Form, 64>"));
+    assert!(
+        !solid_shaders::sources::<Cuboid>(visibility, (true, 16_384))[0]
+            .contains("array<Form, 64>")
+    );
 }
 
 #[test]

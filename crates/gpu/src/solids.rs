@@ -18,67 +18,22 @@ CPU in `f64`.
 use crate::{
     Error, Gpu,
     exact::{Exact, key},
-    kernel::{Kernel, Pool, Work, shader, storage},
+    kernel::{Kernel, Pool, Work, storage},
     picture::Frame,
     runs::is_plain_sphere,
     shape::{Close, Draw, Near, Place, Shape},
+    solid_depths::depths,
+    solid_shaders::{BLOCK_BYTES, Most, OVER_BLOCKS, sources, words},
     store::Layout,
     table::bound_of_sphere,
 };
-use puncta_avc::{Glyph, Glyphs, Lens, Level, Levels, PRELUDE, Surface};
+use puncta_avc::{Glyph, Glyphs, Lens, Level, Levels, Surface};
 use puncta_core::{Brick, Camera, Content, NO_RECORD, Picture, Scene, ScreenBound};
 use rayon::prelude::*;
 use std::{fmt, ops::Range};
-use wgpu::naga;
 
 /// By how much a ball is larger than what it holds: more than rounding.
 const AROUND: f64 = 1.00001;
-
-/// How far a silhouette may be off, in pixels: where `f64` sees nothing, the depth is that of a ray so
-/// far away.
-const HAIR: f64 = 1e-3;
-
-/// The bytes of `Block` of `glyph_large.wgsl`.
-pub(crate) const BLOCK_BYTES: u64 = 32;
-
-/// How much one lane, or one list, may be given.
-#[derive(Clone, Copy, Debug)]
-struct Most {
-    /// Triangles that a lane goes through.
-    triangles: u32,
-    /// Pixels that it draws itself.
-    spent: u32,
-    /// Blocks that it leaves.
-    left: u32,
-    /// Tiles that it looks at to find whether its record is hidden.
-    tiles: u32,
-    /// Blocks for which there is room, at least.
-    blocks: u64,
-}
-
-impl Most {
-    /// On a GPU: some milliseconds of a lane.
-    const GPU: Self =
-        Self { triangles: 1 << 14, spent: 1 << 16, left: 1 << 13, tiles: 1 << 12, blocks: 1 << 18 };
-
-    /// Lavapipe ends a shader that has gone through loops 65,535 times. It counts for eight lanes
-    /// together: at worst they take turns. So this is at most 512 x 32 for triangles, whose corners and owners
-    /// are found in loops, 8 x 4096 + 8 x 512 for pixels and blocks, and 4096 + 64 for tiles.
-    const CPU: Self = Self { triangles: 512, spent: 4096, left: 512, tiles: 4096, blocks: 1 << 15 };
-
-    const fn of(is_cpu: bool) -> Self {
-        if is_cpu { Self::CPU } else { Self::GPU }
-    }
-
-    /// As constants of shaders.
-    fn source(self) -> String {
-        let Self { triangles, spent, left, tiles, blocks: _ } = self;
-        format!(
-            "const TRIANGLES_MAX: u32 = {triangles}u;\nconst SPENT_MAX: u32 = {spent}u;\n\
-             const LEFT_MAX: u32 = {left}u;\nconst TILES_MAX: u32 = {tiles}u;\n"
-        )
-    }
-}
 
 /// Draws records as glyphs.
 pub struct Solids<G: Glyph> {
@@ -97,75 +52,6 @@ impl<G: Glyph> fmt::Debug for Solids<G> {
         f.debug_struct("Solids").field("glyphs", &self.glyphs).finish_non_exhaustive()
     }
 }
-
-/// The words of a record, and of the style.
-pub(crate) const fn words<G: Glyph>() -> (usize, usize) {
-    const {
-        assert!(size_of::<G>().is_multiple_of(4), "a record must be made of words of 32 bits");
-        assert!(size_of::<G::Style>().is_multiple_of(4), "so must a style");
-    }
-    (size_of::<G>() / 4, size_of::<G::Style>() / 4)
-}
-
-/// What lies before the code of a glyph, and its code.
-pub(crate) fn glyph_source<G: Glyph>() -> String {
-    let (words, style) = words::<G>();
-    let constants = format!("const WORDS: u32 = {}u;\nconst STYLE: u32 = {style}u;\n", words + 1);
-    [&constants, PRELUDE, shader!("glyph_words"), G::WGSL].concat()
-}
-
-/// The shaders of a glyph: what draws chunks, what does so for records that were seen before, and what
-/// draws blocks of large triangles. Groups may keep so many bytes.
-pub(crate) fn sources<G: Glyph>(
-    visibility: &str,
-    (is_cpu, group_bytes): (bool, u32),
-) -> [String; 3] {
-    let before = shader!("camera", "disc", "work", "place");
-    let glyph = glyph_source::<G>();
-    // A group keeps 64 forms, and where their triangles end.
-    let can_share =
-        form_bytes(&glyph).is_some_and(|bytes| bytes.saturating_add(4) <= group_bytes / 64);
-    let after = shader!("glyph_large", "glyph_facet", "glyph_triangle");
-    let common = [before, visibility, &glyph, after, &Most::of(is_cpu).source()].concat();
-    let draw = if G::HAS_FEW_TRIANGLES || !can_share {
-        shader!("hidden", "glyph", "glyph_alone")
-    } else {
-        shader!("hidden", "glyph", "glyph_together")
-    };
-    let wanted = [shader!("glyph_any"), shader!("glyph_seen")];
-    let [all, seen] = wanted.map(|wanted| [&common, draw, wanted].concat());
-    [all, seen, common + shader!("glyph_blocks")]
-}
-
-/// The bytes of a `Form` in memory at most, if there is one.
-fn form_bytes(source: &str) -> Option<u32> {
-    let module = naga::front::wgsl::parse_str(source).ok()?;
-    let mut layouter = naga::proc::Layouter::default();
-    layouter.update(module.to_ctx()).ok()?;
-    let is_form = |(_, ty): &(_, &naga::Type)| ty.name.as_deref() == Some("Form");
-    let (form, _) = module.types.iter().find(is_form)?;
-    // A truth has one byte here, and four in the memory of a group.
-    Some(layouter[form].to_stride().saturating_add(bools(&module, form).saturating_mul(4)))
-}
-
-/// How many numbers of a type are truths.
-fn bools(module: &naga::Module, ty: naga::Handle<naga::Type>) -> u32 {
-    use naga::{ArraySize, ScalarKind, TypeInner};
-    match &module.types[ty].inner {
-        TypeInner::Scalar(scalar) => u32::from(scalar.kind == ScalarKind::Bool),
-        TypeInner::Vector { size, scalar } if scalar.kind == ScalarKind::Bool => *size as u32,
-        TypeInner::Array { base, size: ArraySize::Constant(count), .. } => {
-            bools(module, *base).saturating_mul(count.get())
-        }
-        TypeInner::Struct { members, .. } => {
-            members.iter().fold(0, |sum, it| bools(module, it.ty).saturating_add(sum))
-        }
-        _ => 0,
-    }
-}
-
-/// The shader that counts blocks.
-pub(crate) const OVER_BLOCKS: &str = shader!("work", "glyph_large", "glyph_over");
 
 impl<G: Glyph> Solids<G> {
     pub(crate) fn new(gpu: &Gpu, glyphs: Glyphs<G>) -> Result<Self, Error> {
@@ -372,43 +258,6 @@ impl<G: Glyph> Draw for Solids<G> {
     }
 }
 
-/// The view depths of a surface at some pixels, which are ascending, of a picture; where rays miss it, of a
-/// ray a hair away.
-///
-/// Facet by facet: a glyph may have a hundred thousand, of which each covers few of the pixels.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "all are inside")]
-fn depths(surface: &Surface, pixels: &[usize], size: [u32; 2]) -> Vec<Option<f64>> {
-    let width = size[0] as usize;
-    let mut depths = vec![None; pixels.len()];
-    let (Some(first), Some(last)) = (pixels.first(), pixels.last()) else { return depths };
-    let around = [first / width, last / width].map(|row| row as i64);
-    for facet in surface.facets() {
-        let spans = facet.spans(size);
-        let rows = spans.rows();
-        for row in rows[0].max(around[0])..=rows[1].min(around[1]) {
-            let [from, to] = spans.of(row as f64);
-            if from > to {
-                continue;
-            }
-            let of_row = facet.depth_of_row(row as f64);
-            let start = row as usize * width;
-            let place = pixels.partition_point(|&pixel| pixel < start + from as usize);
-            let covered = pixels[place..].iter().zip(&mut depths[place..]);
-            for (pixel, depth) in covered.take_while(|(pixel, _)| **pixel <= start + to as usize) {
-                let new = of_row.at((pixel - start) as f64);
-                *depth = Some(depth.map_or(new, |old: f64| old.min(new)));
-            }
-        }
-    }
-    for (&pixel, depth) in pixels.iter().zip(&mut depths) {
-        if depth.is_none() {
-            let (column, row) = ((pixel % width) as f64, (pixel / width) as f64);
-            *depth = surface.depth_around(column, row, HAIR);
-        }
-    }
-    depths
-}
-
 /// A glyph that the CPU draws.
 #[derive(Debug)]
 pub(crate) struct Solid {
@@ -441,47 +290,6 @@ impl Exact for Solid {
                 let pixel = &mut pixels[(column - i64::from(first)) as usize];
                 *pixel = key(depths.at(column as f64) as f32, self.id).max(*pixel);
             }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::DVec3;
-    use proptest::prelude::*;
-    use puncta_avc::{Arc, Cuboid, Disc};
-    use puncta_core::View;
-
-    fn agree<G: Glyph<Style = [u32; 0]>>(record: G, eye: DVec3) -> Result<(), TestCaseError> {
-        let view = View::look_at(eye, DVec3::ZERO, DVec3::Z).unwrap().with_size(33, 21).unwrap();
-        let camera = Camera::new(&view, DVec3::ZERO);
-        let glyphs = Glyphs::<G>::new([]);
-        let (lens, records) = (Lens::new(&camera, 0.1), [record]);
-        let mut surface = Surface::default();
-        surface.fill(&lens, &glyphs.cloud(&records), 0, Level::Record);
-        // Those of other records are not asked for.
-        let pixels: Vec<usize> = (0..33 * 21).filter(|pixel| pixel % 7 != 3).collect();
-        let found = depths(&surface, &pixels, [33, 21]);
-        for (pixel, found) in pixels.into_iter().zip(found) {
-            let (column, row) = ((pixel % 33) as f64, (pixel / 33) as f64);
-            prop_assert_eq!(found, surface.depth_around(column, row, HAIR), "{}", pixel);
-        }
-        Ok(())
-    }
-
-    proptest! {
-        /// Facet by facet and pixel by pixel, depths are the same.
-        #[test]
-        fn depths_are_those_of_each_pixel(
-            eye in [1.0..3.0, -3.0..3.0, -3.0..3.0_f64],
-            sides in [0.1_f32..2.0, 0.1_f32..2.0, 0.01_f32..1.0],
-        ) {
-            let (eye, [a, b, height]) = (DVec3::from(eye), sides);
-            agree(Cuboid::new([0.1, 0.2, 0.0], sides), eye)?;
-            agree(Disc::new([0.0; 3], [a, b, height], a), eye)?;
-            let arc = Arc { center: [0.0; 3], radii: [a * 0.3, a], turns: [0.1, b], height };
-            agree(arc, eye)?;
         }
     }
 }
