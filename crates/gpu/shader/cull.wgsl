@@ -51,7 +51,9 @@ fn cull(
     if low(runs[piece.run].columns) > high(runs[piece.run].columns) {
         return;
     }
-    if (piece.flags & IS_TESTED) != 0u && is_hidden(runs[piece.run].columns, runs[piece.run].rows, runs[piece.run].nearest) {
+    let nearest = runs[piece.run].nearest;
+    if (piece.flags & IS_TESTED) != 0u
+        && is_hidden(runs[piece.run].columns, runs[piece.run].rows, nearest) {
         return;
     }
     drawn[brick] = 1u;

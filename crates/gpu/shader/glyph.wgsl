@@ -20,9 +20,9 @@ const SLOTS: u32 = 0x3ffffffu;
 // By how much a ball is larger than what it holds: more than rounding.
 const AROUND: f32 = 1.00001;
 
-// How many pixels this lane has drawn itself, and how many blocks it has left. Of these and of triangles
-// there may be so many, as `solid_shaders.rs` says: drivers end a shader that takes too long. Pixels that are more
-// are left, too; of what else is more, the brick is missed.
+// How many pixels this lane has drawn itself, and how many blocks it has left. How many these and triangles
+// may be, `solid_shaders.rs` says: drivers end a shader that takes too long. What would be too many pixels is
+// left, too; where anything else is too much, the brick is missed.
 var<private> spent: u32;
 var<private> left: u32;
 
