@@ -69,6 +69,7 @@ impl<S> GpuRenderer<S> {
     {
         let indices = bricks.iter().map(VisibleBrick::index).collect();
         let mut indices = self.bench.missed(&self.gpu, indices)?;
+        self.missed += indices.len() as u64;
         if self.config.skipping == Skipping::Hidden {
             indices = survey::glance(self, &indices)?;
         }

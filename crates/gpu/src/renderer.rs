@@ -43,6 +43,8 @@ pub struct GpuRenderer<S = Spheres> {
     /// The picture before, if it may be recalled.
     pub(crate) last: Option<Frame>,
     pub(crate) round: u64,
+    /// Bricks of this picture that were too much for the device.
+    pub(crate) missed: u64,
     /// What shading needs, once something was shaded.
     pub(crate) shading: Option<Shading>,
 }
@@ -195,6 +197,7 @@ impl<S> GpuRenderer<S> {
             frame: None,
             last: None,
             round: 0,
+            missed: 0,
             shading: None,
         })
     }
@@ -215,6 +218,7 @@ impl<S> GpuRenderer<S> {
         };
         frame.restart(&self.gpu, view, self.shape.radius_min())?;
         self.frame = Some(frame);
+        self.missed = 0;
         Ok(())
     }
 
@@ -234,6 +238,17 @@ impl<S> GpuRenderer<S> {
     #[must_use]
     pub fn brought_bytes(&self) -> u64 {
         self.store.as_ref().map_or(0, |store| store.brought)
+    }
+
+    /// How many bricks of this picture were too much for the device, so that the CPU drew them: the
+    /// picture is right, but it took longer.
+    ///
+    /// That is so where bricks hold more large triangles than there is room for, or records of more
+    /// triangles than a shader may go through: smaller bricks help, and simpler records. Spheres are
+    /// never too much.
+    #[must_use]
+    pub const fn missed_bricks(&self) -> u64 {
+        self.missed
     }
 
     /// For each pixel, whether the bricks that were left when [`Renderer::survey`] was last asked may
