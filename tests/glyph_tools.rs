@@ -5,7 +5,10 @@
 #[path = "glyphs/tools.rs"]
 mod tools;
 
-use std::fs;
+use std::{
+    fs,
+    time::{Duration, SystemTime},
+};
 use tools::{Tools, text};
 
 /// A folder with some files.
@@ -109,6 +112,40 @@ fn what_is_left_out_of_a_folder_is_told() {
         .map(|height| tools.draw("city", &["project", "--height", height]).0);
     assert!(pictures[1] != pictures[2]);
     tools.draw("sunburst", &["project", "--height", "lines", "--color", "kind"]);
+}
+
+/// Ages make heights, unless there are none to tell apart.
+#[test]
+fn houses_are_high_by_age() {
+    let tools = Tools::new();
+    fill(&tools, "project");
+    let (fresh, said, _) = tools.draw("city", &["project"]);
+    assert!(said.contains("heights show lines"), "{said}");
+    let file = fs::File::options().append(true).open(tools.path("project/c")).unwrap();
+    file.set_modified(SystemTime::now() - Duration::from_hours(48)).unwrap();
+    let (old, said, _) = tools.draw("city", &["project"]);
+    assert!(said.contains("heights show age"), "{said}");
+    assert!(old != fresh);
+}
+
+/// However high houses are, nothing of a city is cut off.
+#[test]
+fn all_of_a_city_is_in_the_picture() {
+    let tools = Tools::new();
+    fill(&tools, "project");
+    for height in ["size", "lines"] {
+        let size = ["--height", height, "--size", "120x80", "--sky", "0", "--out", "whole.png"];
+        let output = tools.run("city", &[&["project"], &size[..]].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let pixels = decoded(&fs::read(tools.path("whole.png")).unwrap());
+        let rows: Vec<&[u8]> = pixels.chunks(pixels.len() / 80).collect();
+        let is_plain = |row: &[u8]| {
+            let pixels = row.chunks(row.len() / 120);
+            pixels.clone().zip(pixels.skip(1)).all(|(a, b)| a == b)
+        };
+        // Where there is nothing, all pixels of a row look the same.
+        assert!(is_plain(rows[0]) && is_plain(rows[79]) && !is_plain(rows[40]), "{height}");
+    }
 }
 
 #[cfg(unix)]

@@ -39,6 +39,15 @@ pub(crate) enum Height {
 }
 
 impl Height {
+    /// What it is, in words.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Age => "age",
+            Self::Size => "size",
+            Self::Lines => "lines",
+        }
+    }
+
     fn of(self, file: &File) -> f64 {
         match self {
             Self::Age => file.age,

@@ -19,9 +19,9 @@ use glam::DVec3;
 use glyphs::{Built, DrawingOptions, Outlook, Paint};
 use kinds::Kinds;
 use layout::{ColorBy, Height, Sector};
-use puncta::{Background, Bounds, Glyphs, Grid, GridConfig, Scene, avc::Arc};
+use puncta::{Background, Glyphs, Grid, GridConfig, Scene, avc::Arc};
 use rings::RADIUS;
-use std::process::ExitCode;
+use std::{f64::consts::TAU, process::ExitCode};
 use tree::{Tree, Where};
 
 /// Draws a folder as rings: the turn that an arc takes says how large a file or folder is, and the
@@ -64,7 +64,7 @@ fn build(options: &Options) -> Result<Built<Arc, Grid>> {
     }
     let table = arc(
         -TABLE,
-        &Sector { turns: [0.0, 1.0], radii: [0.0, RADIUS * 1.8], height: TABLE, color: [0; 3] },
+        &Sector { turns: [0.0, 1.0], radii: [0.0, RADIUS * 2.2], height: TABLE, color: [0; 3] },
     );
     let (mut records, mut colors) = (vec![table], vec![[228, 230, 234, 255]]);
     let all = sectors.len();
@@ -83,14 +83,8 @@ fn build(options: &Options) -> Result<Built<Arc, Grid>> {
     let mut scene = Scene::new(records);
     scene.attributes.colors = Some(colors.into());
     let bricks = Grid::sort_scene(&mut scene, &GridConfig::default())?;
-    let reach = RADIUS * 0.92;
     let outlook = Outlook {
-        points: Bounds {
-            min: DVec3::new(-reach, -reach, 0.0),
-            max: DVec3::new(reach, reach, layout::HIGHEST * 0.5),
-        }
-        .corners()
-        .to_vec(),
+        points: sectors.iter().flat_map(rim).collect(),
         toward: DVec3::new(0.0, -1.0, 1.25),
         fov: 28.0,
         zoom: 1.0,
@@ -100,6 +94,20 @@ fn build(options: &Options) -> Result<Built<Arc, Grid>> {
     let (glyphs, paint) = (Glyphs::new([]), Paint::Scene);
     Ok(Built { scene, bricks, glyphs, paint, outlook, notes, facts })
 }
+
+/// Points along the outer rim of an arc, below and above.
+fn rim(sector: &Sector) -> impl Iterator<Item = DVec3> {
+    let ([start, end], radius, height) = (sector.turns, sector.radii[1], sector.height);
+    (0..=RIM).map(move |k| start + (end - start) * f64::from(k) / f64::from(RIM)).flat_map(
+        move |turns| {
+            let (y, x) = (turns * TAU).sin_cos();
+            [0.0, height].map(|z| DVec3::new(radius * x, radius * y, z))
+        },
+    )
+}
+
+/// How many chords such a rim has.
+const RIM: u32 = 32;
 
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
 fn arc(bottom: f64, sector: &Sector) -> Arc {
